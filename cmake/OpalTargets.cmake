@@ -1,0 +1,33 @@
+# Compiler settings that every target of ours shares, and the include rule between the rooms.
+
+find_program(OPAL_CCACHE ccache)
+if(OPAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${OPAL_CCACHE})
+endif()
+
+add_library(opal_compile_options INTERFACE)
+target_compile_options(opal_compile_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Werror
+  # Mathematics without errno and trap semantics vectorizes; values are unchanged.
+  -fno-math-errno -fno-trapping-math)
+
+if(OPAL_AVX2 AND EXISTS /proc/cpuinfo)
+  file(READ /proc/cpuinfo opal_cpuinfo)
+  if(opal_cpuinfo MATCHES "avx2" AND opal_cpuinfo MATCHES "fma")
+    target_compile_options(opal_compile_options INTERFACE -mavx2 -mfma -mf16c -mbmi2)
+  endif()
+endif()
+
+if(OPAL_SANITIZE)
+  target_compile_options(opal_compile_options INTERFACE -fsanitize=${OPAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(opal_compile_options INTERFACE -fsanitize=${OPAL_SANITIZE})
+endif()
+
+# opal_expose_headers(TARGET ROOM): makes "ROOM/file.h" includable for TARGET and for whoever links it, and for nobody else. The
+# sources stay at the top of the tree; a folder of links, one per room, is what goes on the include path.
+function(opal_expose_headers target room)
+  set(link_dir ${CMAKE_BINARY_DIR}/include_${room})
+  file(MAKE_DIRECTORY ${link_dir})
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${room} ${link_dir}/${room} SYMBOLIC)
+  target_include_directories(${target} PUBLIC ${link_dir})
+endfunction()

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "formats/atomic_file.h"
+#include "formats/error.h"
+
+namespace opal {
+namespace {
+
+/// OpenImageIO's messages can run over several lines; ours are one.
+std::string one_line(std::string message) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    return message;
+}
+
+void write_image(const std::filesystem::path& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* data) {
+    AtomicFile file(path);
+    const std::string name = file.temporary_path().string();
+    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
+    if (!output) throw InputError(fmt::format("output {}: {}", path.string(), one_line(OIIO::geterror())));
+    if (!output->open(name, spec) || !output->write_image(type, data) || !output->close())
+        throw SystemError(fmt::format("{}: writing failed: {}", path.string(), one_line(output->geterror())));
+    // Libraries below OpenImageIO can lose a late write error (full disk); a file that reads back whole has none.
+    const std::unique_ptr<OIIO::ImageInput> check = OIIO::ImageInput::open(name);
+    std::vector<float> row(std::size_t(spec.width) * spec.nchannels);
+    if (!check || !check->read_scanlines(0, 0, spec.height - 1, spec.height, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data()))
+        throw SystemError(fmt::format("{}: writing failed: the file does not read back (disk full?)", path.string()));
+    file.commit();
+}
+
+}  // namespace
+
+int Image::find_channel(const std::string& name) const {
+    const auto found = std::find(channel_names.begin(), channel_names.end(), name);
+    return found == channel_names.end() ? -1 : static_cast<int>(found - channel_names.begin());
+}
+
+void write_exr(const std::filesystem::path& path, const Image& image) {
+    OIIO::ImageSpec spec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = image.channel_names;
+    spec.attribute("compression", "zip");
+    for (const auto& [key, value] : image.attributes) spec.attribute(key, value);
+    write_image(path, spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+    std::vector<std::uint8_t> bytes(image.pixels.size());
+    std::transform(image.pixels.begin(), image.pixels.end(), bytes.begin(), [](float value) {
+        return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(std::isfinite(value) ? value : 0.0f, 0.0f, 1.0f)));
+    });
+    OIIO::ImageSpec spec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    for (const auto& [key, value] : image.attributes) spec.attribute(key, value);
+    write_image(path, spec, OIIO::TypeDesc::UINT8, bytes.data());
+}
+
+Image read_image(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) throw InputError(fmt::format("{}: no such image file", path.string()));
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
+    if (!input) throw InputError(fmt::format("{}: not a readable image: {}", path.string(), one_line(OIIO::geterror())));
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1)
+        throw InputError(fmt::format("{}: not a flat image", path.string()));
+    Image image;
+    image.width = spec.width;
+    image.height = spec.height;
+    image.channel_names = spec.channelnames;
+    image.pixels.resize(std::size_t(spec.width) * spec.height * spec.nchannels);
+    for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+        if (attribute.type() == OIIO::TypeDesc::STRING) image.attributes[attribute.name().string()] = attribute.get_string();
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+        throw InputError(fmt::format("{}: broken image: {}", path.string(), one_line(input->geterror())));
+    return image;
+}
+
+}  // namespace opal

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace opal {
+
+/// A float image of named channels, interleaved, top row first. Text attributes travel in the file's header.
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<std::string> channel_names;
+    std::vector<float> pixels;  ///< [(y * width + x) * channels + c]
+    std::map<std::string, std::string> attributes;
+
+    int num_channels() const { return static_cast<int>(channel_names.size()); }
+    const float* pixel(int x, int y) const { return pixels.data() + (std::size_t(y) * width + x) * channel_names.size(); }
+    float* pixel(int x, int y) { return pixels.data() + (std::size_t(y) * width + x) * channel_names.size(); }
+    /// Index of a channel, or -1.
+    int find_channel(const std::string& name) const;
+};
+
+/// OpenEXR, 32-bit float, ZIP, written atomically. Throws InputError (cannot be created) or SystemError (disk full).
+void write_exr(const std::filesystem::path& path, const Image& image);
+
+/// 8-bit sRGB PNG from three channels that already are display-encoded values in [0, 1]; written atomically.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+/// Reads any image OpenImageIO knows (EXR, HDR, PNG ...) as float. Throws InputError.
+Image read_image(const std::filesystem::path& path);
+
+}  // namespace opal

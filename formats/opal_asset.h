@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "formats/spectrum.h"
+
+namespace opal {
+
+/// Raised whenever a reader of the previous version could misread a file.
+inline constexpr int opal_schema_version = 1;
+
+namespace grid_names {
+inline constexpr const char* grain_id = "grain_id";
+inline constexpr const char* shape = "shape";
+inline constexpr const char* sites = "sites";
+}  // namespace grid_names
+
+/// One site of the tessellation.
+struct Site {
+    openvdb::Vec3d position_mm;
+    float weight_mm = 0.0f;     ///< additive weight w_i; larger starts to grow earlier
+    std::int32_t grain = 0;     ///< grain it belongs to, from 1; 0 for a hidden site, which owns nothing
+};
+
+/// Everything about an opal that does not vary from place to place.
+struct OpalConstants {
+    double sphere_diameter_nm = 250.0;
+    double n_sphere = 1.45;
+    double n_medium = 1.333;
+    double coherence_length_um = 25.0;
+    std::string absorber = "carbon";
+    SampledSpectrum sigma_a_per_mm;  ///< absorption coefficient over the vacuum wavelength
+    double sigma_s_rayleigh_400nm_per_mm = 0.0;
+    double sigma_s_mie_per_mm = 0.0;
+    double mie_asymmetry = 0.8;
+};
+
+/// The opal .vdb in memory: what the two programs hand over. Grids are in millimetres, Z up, voxel centres at integer index
+/// coordinates (OpenVDB's convention).
+struct OpalAsset {
+    openvdb::Int32Grid::Ptr grain_id;  ///< grain of each voxel whose centre is inside the shape, from 1; background 0
+    openvdb::FloatGrid::Ptr shape;     ///< level set of the outer surface, mm, negative inside
+    std::vector<Site> sites;           ///< exact geometry; site id = position in this list + 1
+    std::vector<openvdb::math::Quat<float>> grain_orientations;  ///< (x, y, z, w), lattice -> world; element g - 1 is grain g's
+    OpalConstants constants;
+    std::string recipe_toml;  ///< the resolved recipe; empty for files made elsewhere
+    std::uint64_t seed = 0;
+    std::string program_version;
+    int schema_version = 0;  ///< 0 for files made elsewhere
+
+    std::size_t num_grains() const { return grain_orientations.size(); }
+};
+
+/// Writes the asset atomically: grids grain_id, shape, sites (in this order, points last), blosc-compressed where available, with
+/// schema version, units and full provenance as file metadata. The content depends on the asset alone. Throws InputError where the
+/// output cannot be created, SystemError where writing fails (full disk).
+void write_opal_asset(const OpalAsset& asset, const std::filesystem::path& path);
+
+struct ReadOpalOptions {
+    std::uint64_t orientation_seed = 1;  ///< for files that hold no orientations
+    bool with_sites = true;
+};
+
+/// Reads and validates an opal .vdb. A foreign file with only `grain_id` (int, or float from a client that has no ints) reads
+/// too: orientations are then drawn from the stated seed, the shape is made from the labelled voxels, constants are the defaults; each
+/// such step appends a line to `notices`. Throws InputError for missing, truncated or foreign files, no grain_id, ids below 0,
+/// broken metadata, schemas newer than ours.
+OpalAsset read_opal_asset(const std::filesystem::path& path, const ReadOpalOptions& options, std::vector<std::string>& notices);
+
+/// What `opal-model check` finds: errors make a file unusable, advice does not.
+struct AssetCheck {
+    std::vector<std::string> errors;
+    std::vector<std::string> advice;
+};
+
+/// Checks a file against the schema: grids, types, transforms, ids against sites and grains, level set class and sign, a leaf that
+/// Blender needs, provenance. Throws InputError only where the file cannot be opened as a .vdb.
+AssetCheck check_opal_asset(const std::filesystem::path& path);
+
+/// Makes OpenVDB's grid and attribute types known; called by every function here.
+void initialize_openvdb();
+
+/// A uniformly random rotation for (seed, grain): Shoemake 1992, "Uniform random rotations", Graphics Gems III.
+openvdb::math::Quat<float> random_orientation(std::uint64_t seed, bool foreign, std::uint64_t grain);
+
+/// A repeatable display colour of a grain: hue by the golden angle, constant lightness.
+openvdb::Vec3f grain_display_color(std::int32_t grain);
+
+}  // namespace opal

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "formats/text.h"
+#include "formats/toml_reader.h"
+
+namespace opal {
+namespace {
+
+const std::vector<std::string> sampler_names = {"stratified", "independent"};
+const std::vector<std::string> filter_names = {"tent", "box"};
+const std::vector<std::string> camera_names = {"perspective", "orthographic"};
+const std::vector<std::string> environment_names = {"studio", "constant", "file"};
+const std::vector<std::string> diffraction_names = {"two-beam", "none"};
+const std::vector<std::string> material_names = {"diffuse"};
+const std::vector<std::string> object_names = {"opal", "mesh", "plane", "sphere", "cylinder"};
+const std::vector<std::string> aov_names = {"object_id", "grain_id", "depth", "normal"};
+
+template <typename Enum>
+Enum enum_choice(TomlSection& section, const std::string& key, Enum fallback, const std::vector<std::string>& names) {
+    const std::string name = section.choice(key, names[static_cast<std::size_t>(fallback)], names);
+    return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+RenderDescription read_render(TomlSection section) {
+    RenderDescription render;
+    render.width = static_cast<int>(section.integer("width", render.width, 1, 65536));
+    render.height = static_cast<int>(section.integer("height", render.height, 1, 65536));
+    render.samples = static_cast<int>(section.integer("samples", render.samples, 1, 1 << 24));
+    render.max_bounces = static_cast<int>(section.integer("max_bounces", render.max_bounces, 1, 1'000'000));
+    render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
+    render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
+    render.filter = enum_choice(section, "filter", render.filter, filter_names);
+    section.finish();
+    return render;
+}
+
+CameraDescription read_camera(TomlSection section) {
+    const NumberRange coordinate = NumberRange::between(-1.0e7, 1.0e7);
+    CameraDescription camera;
+    camera.kind = enum_choice(section, "kind", camera.kind, camera_names);
+    camera.position_mm = section.vector3("position_mm", camera.position_mm, coordinate);
+    camera.target_mm = section.vector3("target_mm", camera.target_mm, coordinate);
+    camera.up = section.vector3("up", camera.up, coordinate);
+    camera.vertical_fov_deg = section.number("vertical_fov_deg", camera.vertical_fov_deg, NumberRange::between(0.01, 170.0));
+    camera.view_height_mm = section.number("view_height_mm", camera.view_height_mm, NumberRange::positive(1.0e7));
+    camera.aperture_radius_mm = section.number("aperture_radius_mm", 0.0, NumberRange::from_zero(1.0e4));
+    camera.focus_mm = section.number("focus_mm", 0.0, NumberRange::from_zero(1.0e7));
+    if (camera.position_mm == camera.target_mm) section.fail("target_mm", "is where the camera stands");
+    std::array<double, 3> view, cross;
+    for (int i = 0; i < 3; ++i) view[i] = camera.target_mm[i] - camera.position_mm[i];
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        cross[i] = view[j] * camera.up[k] - view[k] * camera.up[j];
+    }
+    if (cross == std::array<double, 3>{0.0, 0.0, 0.0}) section.fail("up", "must not point along the view");
+    section.finish();
+    return camera;
+}
+
+FilmDescription read_film(TomlSection section) {
+    FilmDescription film;
+    film.spectral = section.boolean("spectral", film.spectral);
+    film.aovs = section.choices("aovs", aov_names);
+    film.exposure_ev = section.number("exposure_ev", film.exposure_ev, NumberRange::between(-40.0, 40.0));
+    section.choice("white", "D65", {"D65"});
+    section.finish();
+    return film;
+}
+
+EnvironmentDescription read_environment(TomlSection section) {
+    EnvironmentDescription environment;
+    environment.file = section.path("file");
+    const EnvironmentKind fallback = environment.file.empty() ? EnvironmentKind::studio : EnvironmentKind::file;
+    environment.kind = enum_choice(section, "kind", fallback, environment_names);
+    if (environment.kind == EnvironmentKind::file && environment.file.empty())
+        section.fail("file", "kind = \"file\" needs a lat-long image (.exr or .hdr)");
+    if (environment.kind != EnvironmentKind::file && !environment.file.empty())
+        section.fail("file", "is used with kind = \"file\" only");
+    environment.radiance = section.number("radiance", environment.radiance, NumberRange::from_zero(1.0e9));
+    environment.rotate_deg = section.number("rotate_deg", 0.0, NumberRange::between(-3.6e4, 3.6e4));
+    section.finish();
+    return environment;
+}
+
+OpalDescription read_opal(TomlSection section) {
+    OpalDescription opal;
+    opal.diffraction = enum_choice(section, "diffraction", opal.diffraction, diffraction_names);
+    section.choice("grains", "auto", {"auto", "voxels"});
+    opal.companions = static_cast<int>(section.integer("companions", opal.companions, 0, 3));
+    section.finish();
+    return opal;
+}
+
+MaterialDescription read_material(TomlSection section) {
+    MaterialDescription material;
+    material.name = section.text("name", "");
+    if (material.name.empty()) section.fail("name", "is needed: objects refer to a material by its name");
+    material.kind = enum_choice(section, "kind", material.kind, material_names);
+    material.albedo = section.vector3("albedo", material.albedo, NumberRange::between(0.0, 1.0), true);
+    section.finish();
+    return material;
+}
+
+ObjectDescription read_object(TomlSection section, const std::vector<std::string>& materials) {
+    const NumberRange length = NumberRange::positive(1.0e7);
+    ObjectDescription object;
+    if (!section.has("kind")) section.fail("kind", "is needed; allowed: " + join(object_names));
+    object.kind = enum_choice(section, "kind", object.kind, object_names);
+    if (object.kind == ObjectKind::opal || object.kind == ObjectKind::mesh) {
+        object.file = section.path("file");
+        if (object.file.empty()) section.fail("file", "is needed for this kind of object");
+    }
+    if (object.kind == ObjectKind::opal) {
+        object.orientation_seed = static_cast<std::uint64_t>(section.integer("orientation_seed", 1, 0, INT64_MAX));
+    } else {
+        if (!section.has("material")) section.fail("material", "is needed: the name of a [[material]]");
+        object.material = section.choice("material", "", materials);
+    }
+    if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
+        object.radius_mm = section.number("radius_mm", object.radius_mm, length);
+    if (object.kind == ObjectKind::cylinder) {
+        object.height_mm = section.number("height_mm", object.height_mm, length);
+        const double largest = std::min(object.radius_mm, object.height_mm);
+        object.bevel_mm = section.number("bevel_mm", std::min(object.bevel_mm, 0.5 * largest), NumberRange::from_zero(largest));
+    }
+    if (object.kind == ObjectKind::plane) object.size_mm = section.number("size_mm", object.size_mm, length);
+    object.translate_mm = section.vector3("translate_mm", object.translate_mm, NumberRange::between(-1.0e7, 1.0e7));
+    object.rotate_deg = section.vector3("rotate_deg", object.rotate_deg, NumberRange::between(-3.6e4, 3.6e4));
+    object.scale = section.number("scale", object.scale, NumberRange::positive(1.0e6));
+    section.finish();
+    return object;
+}
+
+SceneDescription read_document(const TomlDocument& document) {
+    SceneDescription scene;
+    TomlSection root = document.root();
+    scene.render = read_render(root.section("render"));
+    scene.camera = read_camera(root.section("camera"));
+    scene.film = read_film(root.section("film"));
+    scene.environment = read_environment(root.section("environment"));
+    scene.opal = read_opal(root.section("opal"));
+    std::vector<std::string> names;
+    for (TomlSection& section : root.sections("material")) {
+        scene.materials.push_back(read_material(section));
+        if (std::find(names.begin(), names.end(), scene.materials.back().name) != names.end())
+            section.fail("name", "'" + scene.materials.back().name + "' is already taken");
+        names.push_back(scene.materials.back().name);
+    }
+    int opals = 0;
+    for (TomlSection& section : root.sections("object")) {
+        scene.objects.push_back(read_object(section, names));
+        if (scene.objects.back().kind == ObjectKind::opal && ++opals > 1)
+            section.fail("kind", "a scene holds one opal in this version");
+    }
+    if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
+    root.finish();
+    return scene;
+}
+
+std::string vector_text(const std::array<double, 3>& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
+
+std::string object_to_toml(const ObjectDescription& object) {
+    std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
+    if (!object.file.empty()) text += fmt::format("file = '{}'\n", object.file.string());
+    if (object.kind == ObjectKind::opal) text += fmt::format("orientation_seed = {}\n", object.orientation_seed);
+    if (!object.material.empty()) text += fmt::format("material = '{}'\n", object.material);
+    if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
+        text += fmt::format("radius_mm = {}\n", object.radius_mm);
+    if (object.kind == ObjectKind::cylinder)
+        text += fmt::format("height_mm = {}\nbevel_mm = {}\n", object.height_mm, object.bevel_mm);
+    if (object.kind == ObjectKind::plane) text += fmt::format("size_mm = {}\n", object.size_mm);
+    return text + fmt::format("translate_mm = {}\nrotate_deg = {}\nscale = {}\n", vector_text(object.translate_mm),
+                              vector_text(object.rotate_deg), object.scale);
+}
+
+}  // namespace
+
+SceneDescription read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    return read_document(TomlDocument(file, overrides));
+}
+
+SceneDescription parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+    return read_document(TomlDocument(text, name, overrides));
+}
+
+std::string scene_to_toml(const SceneDescription& scene) {
+    const auto name = [](const std::vector<std::string>& names, auto value) { return names[static_cast<std::size_t>(value)]; };
+    const RenderDescription& render = scene.render;
+    const CameraDescription& camera = scene.camera;
+    std::string text = fmt::format(
+        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = \"{}\"\n",
+        render.width, render.height, render.samples, render.max_bounces, render.seed, name(sampler_names, render.sampler),
+        name(filter_names, render.filter));
+    text += fmt::format(
+        "\n[camera]\nkind = \"{}\"\nposition_mm = {}\ntarget_mm = {}\nup = {}\nvertical_fov_deg = {}\nview_height_mm = {}\n"
+        "aperture_radius_mm = {}\nfocus_mm = {}\n",
+        name(camera_names, camera.kind), vector_text(camera.position_mm), vector_text(camera.target_mm), vector_text(camera.up),
+        camera.vertical_fov_deg, camera.view_height_mm, camera.aperture_radius_mm, camera.focus_mm);
+    text += fmt::format("\n[film]\nspectral = {}\naovs = [{}]\nexposure_ev = {}\nwhite = \"D65\"\n", scene.film.spectral,
+                        scene.film.aovs.empty() ? "" : fmt::format("\"{}\"", fmt::join(scene.film.aovs, "\", \"")),
+                        scene.film.exposure_ev);
+    text += fmt::format("\n[environment]\nkind = \"{}\"\n", name(environment_names, scene.environment.kind));
+    if (!scene.environment.file.empty()) text += fmt::format("file = '{}'\n", scene.environment.file.string());
+    text += fmt::format("radiance = {}\nrotate_deg = {}\n", scene.environment.radiance, scene.environment.rotate_deg);
+    text += fmt::format("\n[opal]\ndiffraction = \"{}\"\ngrains = \"voxels\"\ncompanions = {}\n",
+                        name(diffraction_names, scene.opal.diffraction), scene.opal.companions);
+    for (const MaterialDescription& material : scene.materials)
+        text += fmt::format("\n[[material]]\nname = '{}'\nkind = \"{}\"\nalbedo = {}\n", material.name,
+                            name(material_names, material.kind), vector_text(material.albedo));
+    for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
+    return text;
+}
+
+}  // namespace opal

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace opal {
+
+enum class SamplerKind { stratified, independent };
+enum class FilterKind { tent, box };
+enum class CameraKind { perspective, orthographic };
+enum class EnvironmentKind { studio, constant, file };
+enum class DiffractionModel { two_beam, none };
+enum class MaterialKind { diffuse };
+enum class ObjectKind { opal, mesh, plane, sphere, cylinder };
+
+struct RenderDescription {
+    int width = 960;
+    int height = 720;
+    int samples = 256;
+    int max_bounces = 64;
+    std::uint64_t seed = 1;
+    SamplerKind sampler = SamplerKind::stratified;
+    FilterKind filter = FilterKind::tent;
+};
+
+struct CameraDescription {
+    CameraKind kind = CameraKind::perspective;
+    std::array<double, 3> position_mm = {0.0, -45.0, 30.0};
+    std::array<double, 3> target_mm = {0.0, 0.0, 2.0};
+    std::array<double, 3> up = {0.0, 0.0, 1.0};
+    double vertical_fov_deg = 20.0;
+    double view_height_mm = 20.0;  ///< orthographic: height of the picture in the scene
+    double aperture_radius_mm = 0.0;
+    double focus_mm = 0.0;  ///< distance to the plane in focus; 0 = at the target
+};
+
+struct FilmDescription {
+    bool spectral = false;  ///< 48 layers of 10 nm beside the RGB
+    std::vector<std::string> aovs;
+    double exposure_ev = 0.0;
+};
+
+struct EnvironmentDescription {
+    EnvironmentKind kind = EnvironmentKind::studio;
+    std::filesystem::path file;
+    double radiance = 1.0;    ///< scale of the whole environment
+    double rotate_deg = 0.0;  ///< counter-clockwise about +Z, seen from above
+};
+
+struct OpalDescription {
+    DiffractionModel diffraction = DiffractionModel::two_beam;
+    int companions = 3;  ///< wavelengths that travel with the hero
+};
+
+struct MaterialDescription {
+    std::string name;
+    MaterialKind kind = MaterialKind::diffuse;
+    std::array<double, 3> albedo = {0.5, 0.5, 0.5};  ///< linear sRGB reflectance
+};
+
+struct ObjectDescription {
+    ObjectKind kind = ObjectKind::opal;
+    std::filesystem::path file;  ///< opal: the .vdb; mesh: OBJ, PLY, STL or glTF
+    std::string material;        ///< name of a [[material]]; unused for an opal
+    std::array<double, 3> translate_mm = {0.0, 0.0, 0.0};
+    std::array<double, 3> rotate_deg = {0.0, 0.0, 0.0};  ///< about X, then Y, then Z
+    double scale = 1.0;
+    double radius_mm = 10.0;  ///< sphere, cylinder
+    double height_mm = 2.0;   ///< cylinder: from z = 0 down to -height, so that things stand on it
+    double bevel_mm = 0.3;    ///< cylinder: rounding of its upper edge
+    double size_mm = 2000.0;  ///< plane: edge of the square
+    std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
+};
+
+/// What opal-render draws: a validated scene.toml.
+struct SceneDescription {
+    RenderDescription render;
+    CameraDescription camera;
+    FilmDescription film;
+    EnvironmentDescription environment;
+    OpalDescription opal;
+    std::vector<MaterialDescription> materials;
+    std::vector<ObjectDescription> objects;
+};
+
+/// Reads and validates. Throws InputError located at file:line:column.
+SceneDescription read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// The same from text; `name` stands for the file in messages and gives the folder of relative paths.
+SceneDescription parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides);
+
+/// The scene with every default spelled out, as TOML that `parse_scene` reads back.
+std::string scene_to_toml(const SceneDescription& scene);
+
+}  // namespace opal

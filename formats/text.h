@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace opal {
+
+/// The candidate nearest to `name` by edit distance, or an empty string where none is near enough to be a likely slip.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+/// "a, b, c".
+std::string join(const std::vector<std::string>& names, std::string_view separator = ", ");
+
+/// "; did you mean 'x'?" or "", ready to append to a message.
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace opal
