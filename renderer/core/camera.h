@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/vec.h"
+
+namespace opal {
+
+/// A thin-lens or orthographic camera. `right` and `down` span the picture: at unit distance for a perspective view, in mm for an
+/// orthographic one; both for the whole width and height.
+struct Camera {
+    Vec3 position;
+    Vec3 forward;
+    Vec3 right, down;
+    float aperture_radius_mm = 0.0f;
+    float focus_mm = 1.0f;  ///< along `forward`
+    bool orthographic = false;
+};
+
+/// Ray through the picture position (x, y) in [0, 1]^2, top left first; (lens_u, lens_v) in [0, 1)^2 choose the point on the lens.
+OPAL_HD inline Ray camera_ray(const Camera& camera, float x, float y, float lens_u, float lens_v) {
+    const Vec3 offset = (x - 0.5f) * camera.right + (y - 0.5f) * camera.down;
+    if (camera.orthographic) return {camera.position + offset, camera.forward};
+    const Vec3 through = camera.forward + offset;
+    if (camera.aperture_radius_mm <= 0.0f) return {camera.position, normalize(through)};
+    const float radius_mm = camera.aperture_radius_mm * sqrtf(lens_u), angle_rad = 2.0f * pi_f * lens_v;
+    const Vec3 lens = (radius_mm * cosf(angle_rad)) * normalize(camera.right) + (radius_mm * sinf(angle_rad)) * normalize(camera.down);
+    return {camera.position + lens, normalize(camera.focus_mm * through - lens)};
+}
+
+/// Tent filter of radius one pixel by inversion: offset from the pixel's centre in pixels.
+OPAL_HD inline float sample_tent(float u) { return u < 0.5f ? sqrtf(2.0f * u) - 1.0f : 1.0f - sqrtf(2.0f - 2.0f * u); }
+
+}  // namespace opal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/vec.h"
+
+/// The colloidal crystal: touching spheres on an fcc lattice, and its reciprocal vectors inside the limiting sphere.
+namespace opal {
+
+inline constexpr double fcc_filling = 0.74048048969306104;  ///< pi / (3 sqrt 2)
+
+/// A pair of reciprocal vectors +G and -G: one family of lattice planes. No factor 2 pi: |G| = sqrt(h^2+k^2+l^2) / a.
+struct PlanePair {
+    Vec3 normal;            ///< unit G, lattice frame (cubic axes)
+    float g_per_nm;         ///< |G|
+    float epsilon;          ///< |Fourier coefficient of the permittivity| for this G
+    int h, k, l;
+};
+
+/// Enough for spheres of 1000 nm: |G| <= 2 n / 360 nm.
+inline constexpr int max_plane_pairs = 1024;
+/// Pairs that one grain crossing may test: a bit each in the path's "already tested" mask.
+inline constexpr int max_tested_pairs = 64;
+
+struct CrystalParameters {
+    double sphere_diameter_nm = 250.0;
+    double n_sphere = 1.45;
+    double n_medium = 1.333;
+};
+
+/// Effective index of the opal, n = f n_sphere + (1 - f) n_medium (the source's linear mean).
+inline double effective_index(const CrystalParameters& crystal) {
+    return fcc_filling * crystal.n_sphere + (1.0 - fcc_filling) * crystal.n_medium;
+}
+
+/// Fourier coefficient of the permittivity of touching spheres at |G| (1/nm):
+/// (n_s^2 - n_m^2) f 3 (sin x - x cos x) / x^3 with x = pi |G| d.
+inline double permittivity_coefficient(const CrystalParameters& crystal, double g_per_nm) {
+    const double x = double(pi_f) * g_per_nm * crystal.sphere_diameter_nm;
+    const double contrast = crystal.n_sphere * crystal.n_sphere - crystal.n_medium * crystal.n_medium;
+    return contrast * fcc_filling * 3.0 * (sin(x) - x * cos(x)) / (x * x * x);
+}
+
+/// All pairs with |G| <= 2 n_eff / lambda_min, shortest first (then by h, k, l), the first `capacity` of them. Returns how many lie
+/// inside; the limiting sphere then holds 2 * result + 1 points with the origin. fcc: h, k, l all even or all odd.
+inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_min_nm, PlanePair* pairs, int capacity) {
+    const double edge_nm = 1.4142135623730951 * crystal.sphere_diameter_nm;
+    const double g_max_per_nm = 2.0 * effective_index(crystal) / wavelength_min_nm;
+    const int limit = int(g_max_per_nm * edge_nm) + 1;
+    const int square_limit = int(g_max_per_nm * edge_nm * g_max_per_nm * edge_nm);
+    int count = 0;
+    for (int norm = 1; norm <= square_limit; ++norm)
+        for (int h = -limit; h <= limit; ++h)
+            for (int k = -limit; k <= limit; ++k)
+                for (int l = -limit; l <= limit; ++l) {
+                    const bool allowed = ((h ^ k) & 1) == 0 && ((k ^ l) & 1) == 0;
+                    const bool first_of_pair = h > 0 || (h == 0 && (k > 0 || (k == 0 && l > 0)));
+                    if (!allowed || !first_of_pair || h * h + k * k + l * l != norm) continue;
+                    const double root = sqrt(double(norm));
+                    const double g_per_nm = root / edge_nm;
+                    if (count < capacity)
+                        pairs[count] = {{float(h / root), float(k / root), float(l / root)},
+                                        float(g_per_nm),
+                                        float(fabs(permittivity_coefficient(crystal, g_per_nm))),
+                                        h, k, l};
+                    ++count;
+                }
+    return count;
+}
+
+/// Exact Bragg wavelength (vacuum nm) of planes with |G| met at cosine `cosine` to their normal.
+OPAL_HD inline float bragg_wavelength_nm(float n_eff, float cosine, float g_per_nm) { return 2.0f * n_eff * cosine / g_per_nm; }
+
+/// Relative width of the stop band at normal incidence, |eps_G| / n_eff^2.
+inline double relative_stop_band_width(const CrystalParameters& crystal, double g_per_nm) {
+    const double n = effective_index(crystal);
+    return fabs(permittivity_coefficient(crystal, g_per_nm)) / (n * n);
+}
+
+}  // namespace opal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/spectrum_view.h"
+
+namespace opal {
+
+/// Light from infinity: a latitude-longitude picture of linear sRGB radiance (times D65), top row at +Z, with the tables that draw
+/// directions in proportion to it.
+struct EnvironmentView {
+    const Rgb* texels = nullptr;
+    const float* row_cdf = nullptr;     ///< height + 1 values: which row
+    const float* column_cdf = nullptr;  ///< height rows of width + 1 values: which column in the row
+    int width = 0;
+    int height = 0;
+    float rotation_rad = 0.0f;  ///< counter-clockwise about +Z
+};
+
+OPAL_HD inline float wrap_unit(float x) { return x - floorf(x); }
+
+/// Continuous texel coordinates of a direction: u in [0, 1) with longitude from +X counter-clockwise, v in [0, 1] from +Z down.
+OPAL_HD inline void environment_uv(const EnvironmentView& environment, Vec3 direction, float& u, float& v) {
+    u = wrap_unit((atan2f(direction.y, direction.x) - environment.rotation_rad) * (0.5f / pi_f));
+    v = acosf(min_of(1.0f, max_of(-1.0f, direction.z))) * (1.0f / pi_f);
+}
+
+/// Radiance from a direction, bilinear between texel centres.
+OPAL_HD inline Rgb environment_radiance(const EnvironmentView& environment, Vec3 direction) {
+    float u, v;
+    environment_uv(environment, direction, u, v);
+    const float x = u * float(environment.width) - 0.5f, y = v * float(environment.height) - 0.5f;
+    const int x0 = int(floorf(x)), y0 = int(floorf(y));
+    const float tx = x - float(x0), ty = y - float(y0);
+    const int columns[2] = {(x0 + environment.width) % environment.width, (x0 + 1) % environment.width};
+    const int rows[2] = {max_of(y0, 0), min_of(y0 + 1, environment.height - 1)};
+    Rgb sum;
+    for (int i = 0; i < 4; ++i) {
+        const Rgb& texel = environment.texels[rows[i / 2] * environment.width + columns[i % 2]];
+        const float weight = (i % 2 ? tx : 1.0f - tx) * (i / 2 ? ty : 1.0f - ty);
+        sum.r += weight * texel.r;
+        sum.g += weight * texel.g;
+        sum.b += weight * texel.b;
+    }
+    return sum;
+}
+
+/// Index of the interval of a cumulative table that holds u, and the position within it.
+OPAL_HD inline int sample_cdf(const float* cdf, int count, float u, float& within) {
+    int low = 0, high = count;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        (cdf[middle] <= u ? low : high) = middle;
+    }
+    within = min_of((u - cdf[low]) / (cdf[low + 1] - cdf[low]), 0.999999f);
+    return low;
+}
+
+/// Probability density (1/sr) with which sample_environment draws a direction.
+OPAL_HD inline float environment_pdf(const EnvironmentView& environment, Vec3 direction) {
+    float u, v;
+    environment_uv(environment, direction, u, v);
+    const int column = min_of(int(u * float(environment.width)), environment.width - 1);
+    const int row = min_of(int(v * float(environment.height)), environment.height - 1);
+    const float* columns = environment.column_cdf + row * (environment.width + 1);
+    const float density = (environment.row_cdf[row + 1] - environment.row_cdf[row]) * (columns[column + 1] - columns[column]) *
+                          float(environment.width) * float(environment.height);
+    const float sine = sqrtf(max_of(0.0f, 1.0f - direction.z * direction.z));
+    return sine > 1.0e-6f ? density / (2.0f * pi_f * pi_f * sine) : 0.0f;
+}
+
+/// Draws a direction towards the environment.
+OPAL_HD inline Vec3 sample_environment(const EnvironmentView& environment, float u1, float u2) {
+    float within_row, within_column;
+    const int row = sample_cdf(environment.row_cdf, environment.height, u1, within_row);
+    const int column = sample_cdf(environment.column_cdf + row * (environment.width + 1), environment.width, u2, within_column);
+    const float theta_rad = pi_f * (float(row) + within_row) / float(environment.height);
+    const float phi_rad = 2.0f * pi_f * (float(column) + within_column) / float(environment.width) + environment.rotation_rad;
+    const float sine = sinf(theta_rad);
+    return normalize({sine * cosf(phi_rad), sine * sinf(phi_rad), cosf(theta_rad)});
+}
+
+}  // namespace opal

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanovdb/NanoVDB.h>
+
+#include "renderer/core/vec.h"
+
+namespace opal {
+
+using GrainGrid = nanovdb::NanoGrid<int32_t>;
+
+/// Where the grains of an opal are: the labelled voxels and their placement in the object's own space.
+struct GrainField {
+    const GrainGrid* grid = nullptr;
+    float voxels_per_mm = 1.0f;  ///< object space
+    Vec3 index_of_origin;        ///< index coordinates of the object's origin; voxel centres are at integers
+};
+
+/// Hierarchical DDA: walks a ray through the tree of grain_id, one constant tile, empty node or voxel at a time. Each step leaves
+/// the box it is in through the exact face that the ray meets first, so no box is skipped and none is visited twice.
+class GrainWalk {
+  public:
+    /// `origin`, `direction` in object space (mm); distances below are along the ray, mm of object space.
+    OPAL_HD GrainWalk(const GrainField& field, Vec3 origin, Vec3 direction)
+        : accessor_(field.grid->tree().root()), direction_(field.voxels_per_mm * direction) {
+        // A voxel with centre i covers [i - 1/2, i + 1/2): shifted by half so that floor finds it.
+        origin_ = field.voxels_per_mm * origin + field.index_of_origin + Vec3{0.5f, 0.5f, 0.5f};
+        inverse_ = {1.0f / direction_.x, 1.0f / direction_.y, 1.0f / direction_.z};
+        voxel_ = {int(floorf(origin_.x)), int(floorf(origin_.y)), int(floorf(origin_.z))};
+    }
+
+    /// Goes on from `distance` to where a grain other than `current` begins, and returns it with `distance` set there. Unlabelled
+    /// voxels (0: those cut by the surface) belong to the grain before them. Returns 0 with `distance` = `end` if there is none.
+    OPAL_HD int next_grain(int current, float& distance, float end) {
+        while (true) {
+            const int grain = accessor_.getValue(voxel_);
+            if (grain != 0 && grain != current) return grain;
+            leave_box(int(accessor_.getDim(voxel_, 0)), distance);
+            if (distance >= end) {
+                distance = end;
+                return 0;
+            }
+        }
+    }
+
+  private:
+    OPAL_HD static float exit_distance(float direction, float inverse, float origin, int low, int size) {
+        if (direction == 0.0f) return 3.0e38f;
+        return (float(direction > 0.0f ? low + size : low) - origin) * inverse;
+    }
+
+    OPAL_HD static int entered_index(float direction, int low, int size) { return direction > 0.0f ? low + size : low - 1; }
+
+    OPAL_HD static int clamped_index(float position, int low, int size) {
+        return min_of(max_of(int(floorf(position)), low), low + size - 1);
+    }
+
+    OPAL_HD void leave_box(int size, float& distance) {
+        const int low_x = voxel_[0] & ~(size - 1), low_y = voxel_[1] & ~(size - 1), low_z = voxel_[2] & ~(size - 1);
+        const float exit_x = exit_distance(direction_.x, inverse_.x, origin_.x, low_x, size);
+        const float exit_y = exit_distance(direction_.y, inverse_.y, origin_.y, low_y, size);
+        const float exit_z = exit_distance(direction_.z, inverse_.z, origin_.z, low_z, size);
+        const float exit = min_of(exit_x, min_of(exit_y, exit_z));
+        distance = max_of(distance, exit);
+        const Vec3 position = origin_ + distance * direction_;
+        voxel_ = {exit_x == exit ? entered_index(direction_.x, low_x, size) : clamped_index(position.x, low_x, size),
+                  exit_x != exit && exit_y == exit ? entered_index(direction_.y, low_y, size) : clamped_index(position.y, low_y, size),
+                  exit_x != exit && exit_y != exit ? entered_index(direction_.z, low_z, size) : clamped_index(position.z, low_z, size)};
+    }
+
+    nanovdb::DefaultReadAccessor<int32_t> accessor_;
+    Vec3 origin_, direction_, inverse_;
+    nanovdb::Coord voxel_;
+};
+
+}  // namespace opal

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/interior.h"
+#include "renderer/core/scene_view.h"
+#include "renderer/core/surface_scattering.h"
+
+/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&): Embree on the CPU.
+namespace opal {
+
+/// What one path found, per lane, before the division by the lane's wavelength density.
+struct PathResult {
+    Lanes radiance;
+    Lanes truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
+};
+
+/// Spectra that a path needs at every light, looked up once.
+struct LaneSpectra {
+    Vec3 basis[num_lanes];
+    float white[num_lanes];
+
+    OPAL_HD LaneSpectra(const SpectrumTables& tables, const PathWavelengths& wavelengths) {
+        for (int i = 0; i < wavelengths.count; ++i) {
+            basis[i] = table_at(tables.rgb_basis, wavelengths.wavelength_nm[i]);
+            white[i] = table_at(tables.white, wavelengths.wavelength_nm[i]);
+        }
+    }
+    OPAL_HD float reflectance(Rgb color, int lane) const {
+        return color.r * basis[lane].x + color.g * basis[lane].y + color.b * basis[lane].z;
+    }
+    OPAL_HD float radiance(Rgb color, int lane) const { return white[lane] * reflectance(color, lane); }
+};
+
+template <class Intersector>
+class PathTracer {
+  public:
+    OPAL_HD PathTracer(const SceneView& scene, const Intersector& intersector, const PathWavelengths& wavelengths, PathRandom& random,
+                       PathCounters& counters)
+        : scene_(scene), intersector_(intersector), wavelengths_(wavelengths), random_(random), counters_(counters),
+          spectra_(scene.spectra, wavelengths) {
+        weights_.count = wavelengths.count;
+        if (scene.opal.present) medium_ = lane_medium(scene.opal, wavelengths);
+    }
+
+    /// Traces one path from the camera.
+    OPAL_HD PathResult trace(Ray ray) {
+        for (int bounce = 0;; ++bounce) {
+            RayHit hit;
+            const bool found = intersector_.closest(ray, hit);
+            if (bounce == scene_.max_bounces && (found || inside_)) {
+                result_.truncated = weights_.contribution();
+                ++counters_.truncated_paths;
+                break;
+            }
+            if (inside_) {
+                if (!found) {
+                    ++counters_.lost_paths;
+                    break;
+                }
+                const InteriorEvent event = cross_interior(scene_.opal, wavelengths_, medium_, ray, hit.distance_mm, interior_,
+                                                           weights_, random_, counters_);
+                if (event.kind != InteriorEventKind::surface) {
+                    ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
+                    specular_ = true;
+                    if (!survives_roulette(bounce)) break;
+                    continue;
+                }
+            }
+            if (!found) {
+                add_environment(ray.direction);
+                break;
+            }
+            const Surface surface = surface_at(scene_, hit);
+            ray = surface.material < 0 ? meet_opal(ray, surface) : meet_diffuse(ray, surface);
+            if (!survives_roulette(bounce)) break;
+        }
+        return result_;
+    }
+
+  private:
+    OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface) {
+        const Vec3 direction = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, random_.next());
+        const bool goes_inside = dot(direction, surface.geometric_normal) < 0.0f;
+        if (goes_inside != inside_) interior_.grain = 0;
+        inside_ = goes_inside;
+        interior_.tested_pairs = 0;
+        specular_ = true;
+        return {offset_origin(surface.position, surface.geometric_normal, direction), direction};
+    }
+
+    OPAL_HD Ray meet_diffuse(const Ray& ray, const Surface& surface) {
+        const bool front = dot(ray.direction, surface.geometric_normal) < 0.0f;
+        const Vec3 normal = front ? surface.geometric_normal : -surface.geometric_normal;
+        const Rgb albedo = scene_.materials[surface.material].albedo;
+        for (int i = 0; i < weights_.count; ++i) weights_.throughput.v[i] *= spectra_.reflectance(albedo, i);
+        add_sampled_light(surface.position, normal);
+        const float u1 = random_.next(), u2 = random_.next();
+        const Vec3 direction = sample_cosine(normal, u1, u2);
+        specular_ = false;
+        pdf_ = max_of(0.0f, dot(direction, normal)) / pi_f;
+        return {offset_origin(surface.position, normal, direction), direction};
+    }
+
+    /// Light that the cosine lobe at a diffuse point receives from a drawn direction of the environment (next-event estimation),
+    /// weighted against cosine sampling by the power heuristic (Veach 1997).
+    OPAL_HD void add_sampled_light(Vec3 position, Vec3 normal) {
+        const float u1 = random_.next(), u2 = random_.next();
+        const Vec3 direction = sample_environment(scene_.environment, u1, u2);
+        const float cosine = dot(direction, normal);
+        const float light_pdf = environment_pdf(scene_.environment, direction);
+        if (cosine <= 0.0f || light_pdf <= 0.0f) return;
+        if (intersector_.occluded({offset_origin(position, normal, direction), direction})) return;
+        const float cosine_pdf = cosine / pi_f;
+        const float weight = square(light_pdf) / (square(light_pdf) + square(cosine_pdf));
+        add_light(environment_radiance(scene_.environment, direction), weight * cosine_pdf / light_pdf);
+    }
+
+    OPAL_HD void add_environment(Vec3 direction) {
+        float weight = 1.0f;
+        if (!specular_) weight = square(pdf_) / (square(pdf_) + square(environment_pdf(scene_.environment, direction)));
+        add_light(environment_radiance(scene_.environment, direction), weight);
+    }
+
+    OPAL_HD void add_light(Rgb radiance, float weight) {
+        const Lanes contribution = weights_.contribution();
+        for (int i = 0; i < weights_.count; ++i)
+            result_.radiance.v[i] += weight * contribution.v[i] * spectra_.radiance(radiance, i);
+    }
+
+    /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios stay.
+    OPAL_HD bool survives_roulette(int bounce) {
+        if (bounce < 4) return true;
+        const Lanes contribution = weights_.contribution();
+        float largest = 0.0f;
+        for (int i = 0; i < weights_.count; ++i) largest = max_of(largest, contribution.v[i]);
+        if (!(largest < 1.0f)) return true;
+        if (random_.next() >= largest) return false;
+        for (int i = 0; i < weights_.count; ++i) weights_.throughput.v[i] /= largest;
+        return true;
+    }
+
+    const SceneView& scene_;
+    const Intersector& intersector_;
+    const PathWavelengths& wavelengths_;
+    PathRandom& random_;
+    PathCounters& counters_;
+    LaneSpectra spectra_;
+    LaneMedium medium_;
+    LaneWeights weights_;
+    InteriorState interior_;
+    PathResult result_;
+    bool inside_ = false;
+    bool specular_ = true;
+    float pdf_ = 0.0f;
+};
+
+/// The camera ray and the wavelengths of one sample, and its path: what a kernel does for one work index (pixel, sample).
+template <class Intersector>
+OPAL_HD PathResult trace_sample(const SceneView& scene, const Intersector& intersector, uint32_t pixel, uint32_t sample,
+                                PathWavelengths& wavelengths, PathCounters& counters) {
+    PathRandom random(scene.seed, pixel, sample);
+    const PixelSequence sequence(scene.seed, pixel, sample);
+    const float u = scene.stratified ? sequence.wavelength() : random.next();
+    float x = scene.stratified ? sequence.position_x() : random.next();
+    float y = scene.stratified ? sequence.position_y() : random.next();
+    if (scene.tent_filter) {
+        x = 0.5f + sample_tent(x);
+        y = 0.5f + sample_tent(y);
+    }
+    wavelengths = sample_wavelengths(scene.spectra, u, scene.wavelengths);
+    const float lens_u = random.next(), lens_v = random.next();
+    const Ray ray = camera_ray(scene.camera, (float(pixel % uint32_t(scene.width)) + x) / float(scene.width),
+                               (float(pixel / uint32_t(scene.width)) + y) / float(scene.height), lens_u, lens_v);
+    PathTracer<Intersector> tracer(scene, intersector, wavelengths, random, counters);
+    PathResult result = tracer.trace(ray);
+    for (int i = 0; i < wavelengths.count; ++i)
+        if (!(result.radiance.v[i] >= 0.0f && result.radiance.v[i] < 3.0e38f)) {
+            ++counters.not_a_number;
+            result.radiance = Lanes{};
+            break;
+        }
+    return result;
+}
+
+}  // namespace opal

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/compat.h"
+#include "renderer/core/vec.h"
+
+namespace opal {
+
+/// Wavelengths that travel together along one path: lane 0 is the hero, the others are its companions.
+inline constexpr int num_lanes = 4;
+inline constexpr float spectrum_min_nm = 360.0f;
+inline constexpr float spectrum_max_nm = 830.0f;
+inline constexpr int spectrum_samples = 471;  ///< of tables in steps of 1 nm
+
+/// One value per lane.
+struct Lanes {
+    float v[num_lanes] = {};
+
+    OPAL_HD static Lanes all(float value) {
+        Lanes lanes;
+        for (int i = 0; i < num_lanes; ++i) lanes.v[i] = value;
+        return lanes;
+    }
+};
+
+struct Rgb {
+    float r = 0.0f, g = 0.0f, b = 0.0f;
+};
+
+/// Tables over the wavelength, 360 to 830 nm in steps of 1 nm.
+struct SpectrumTables {
+    const Vec3* observer = nullptr;  ///< CIE 1931 colour matching functions over the integral of y
+    const float* white = nullptr;    ///< D65, scaled so that Y = 1
+    const Vec3* rgb_basis = nullptr; ///< reflectances of the sRGB primaries
+    const float* pdf = nullptr;      ///< probability density of drawn wavelengths, 1/nm, constant within each nm
+    const float* cdf = nullptr;      ///< its integral, 0 at 360 nm, 1 at 830 nm
+};
+
+/// Linear interpolation in a 1 nm table; wavelengths are inside the range by construction.
+template <typename T>
+OPAL_HD inline T table_at(const T* table, float wavelength_nm) {
+    const float position = min_of(max_of(wavelength_nm - spectrum_min_nm, 0.0f), float(spectrum_samples - 1));
+    const int i = min_of(int(position), spectrum_samples - 2);
+    const float t = position - float(i);
+    return (1.0f - t) * table[i] + t * table[i + 1];
+}
+
+/// The wavelengths of one path and their densities (1/nm).
+struct PathWavelengths {
+    float wavelength_nm[num_lanes];
+    float pdf_per_nm[num_lanes];
+    int count = num_lanes;  ///< lanes in use: 1 + companions
+};
+
+/// Draws the hero from the table's density by inversion and its companions by rotating the uniform number (Wilkie et al. 2014,
+/// "Hero wavelength spectral sampling"), so that each lane by itself has the table's density.
+OPAL_HD inline PathWavelengths sample_wavelengths(const SpectrumTables& tables, float u, int count) {
+    PathWavelengths result;
+    result.count = count;
+    for (int lane = 0; lane < num_lanes; ++lane) {
+        float rotated = u + float(lane % count) / float(count);
+        rotated -= floorf(rotated);
+        int low = 0, high = spectrum_samples - 1;
+        while (high - low > 1) {
+            const int middle = (low + high) / 2;
+            (tables.cdf[middle] <= rotated ? low : high) = middle;
+        }
+        const float within = (rotated - tables.cdf[low]) / (tables.cdf[low + 1] - tables.cdf[low]);
+        result.wavelength_nm[lane] = spectrum_min_nm + float(low) + min_of(within, 0.999999f);
+        result.pdf_per_nm[lane] = tables.pdf[low];
+    }
+    return result;
+}
+
+/// Reflectance (or, times the white spectrum, radiance) of a linear sRGB colour: see formats/rgb_basis.h.
+OPAL_HD inline float rgb_spectrum(const SpectrumTables& tables, Rgb color, float wavelength_nm) {
+    const Vec3 basis = table_at(tables.rgb_basis, wavelength_nm);
+    return color.r * basis.x + color.g * basis.y + color.b * basis.z;
+}
+
+}  // namespace opal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/cpu/embree_scene.h"
+
+#include <limits>
+
+#include "formats/error.h"
+
+namespace opal {
+namespace {
+
+void fill_ray(RTCRay& target, const Ray& ray) {
+    target.org_x = ray.origin.x;
+    target.org_y = ray.origin.y;
+    target.org_z = ray.origin.z;
+    target.dir_x = ray.direction.x;
+    target.dir_y = ray.direction.y;
+    target.dir_z = ray.direction.z;
+    target.tnear = 0.0f;
+    target.tfar = std::numeric_limits<float>::infinity();
+    target.time = 0.0f;
+    target.mask = 0xFFFFFFFFu;
+    target.id = 0;
+    target.flags = 0;
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
+    // One building thread: the tree, and with it the order in which ties are met, must not depend on how many cores there are.
+    device_ = rtcNewDevice("threads=1,set_affinity=0");
+    if (!device_) throw SystemError("Embree could not be started");
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    for (const MeshData& mesh : meshes) {
+        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        // Copied into Embree's own buffers: it reads 16 bytes at the last vertex.
+        auto* positions = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                     sizeof(Vec3), mesh.positions.size()));
+        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
+        if (!positions || !indices) throw SystemError("Embree: out of memory");
+        std::copy(mesh.positions.begin(), mesh.positions.end(), positions);
+        std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_, geometry);
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(scene_);
+    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw SystemError("Embree could not build the scene");
+}
+
+EmbreeScene::~EmbreeScene() {
+    if (scene_) rtcReleaseScene(scene_);
+    if (device_) rtcReleaseDevice(device_);
+}
+
+bool EmbreeScene::closest(const Ray& ray, RayHit& hit) const {
+    RTCRayHit query;
+    fill_ray(query.ray, ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+    return true;
+}
+
+bool EmbreeScene::occluded(const Ray& ray) const {
+    RTCRay query;
+    fill_ray(query, ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_, &context, &query);
+    return query.tfar < 0.0f;
+}
+
+}  // namespace opal

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <vector>
+
+#include "renderer/core/scene_view.h"
+#include "renderer/host/mesh_data.h"
+
+namespace opal {
+
+/// Rays against the scene's triangles on the CPU. Safe to use from many threads.
+class EmbreeScene {
+  public:
+    /// The meshes must outlive the object.
+    explicit EmbreeScene(const std::vector<MeshData>& meshes);
+    ~EmbreeScene();
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    /// Nearest surface along the ray.
+    bool closest(const Ray& ray, RayHit& hit) const;
+    /// Whether anything lies along the ray.
+    bool occluded(const Ray& ray) const;
+
+  private:
+    RTCDevice device_ = nullptr;
+    RTCScene scene_ = nullptr;
+};
+
+}  // namespace opal

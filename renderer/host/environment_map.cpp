@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/host/environment_map.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "formats/error.h"
+#include "formats/image.h"
+#include "formats/units.h"
+
+namespace opal {
+namespace {
+
+void fill_studio(EnvironmentMap& map) {
+    map.width = 1024;
+    map.height = 512;
+    map.texels.resize(std::size_t(map.width) * map.height);
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const double theta = units::pi * (y + 0.5) / map.height, phi = 2.0 * units::pi * (x + 0.5) / map.width;
+            const Vec3 direction{float(std::sin(theta) * std::cos(phi)), float(std::sin(theta) * std::sin(phi)), float(std::cos(theta))};
+            map.texels[std::size_t(y) * map.width + x] = studio_radiance(direction);
+        }
+}
+
+void fill_constant(EnvironmentMap& map) {
+    map.width = 64;
+    map.height = 32;
+    map.texels.assign(std::size_t(map.width) * map.height, Rgb{1.0f, 1.0f, 1.0f});
+}
+
+void fill_from_file(EnvironmentMap& map, const std::filesystem::path& path) {
+    const Image image = read_image(path);
+    if (image.num_channels() < 3 && image.num_channels() != 1)
+        throw InputError(fmt::format("{}: {} channels; an environment has 1 or 3", path.string(), image.num_channels()));
+    map.width = image.width;
+    map.height = image.height;
+    map.texels.reserve(std::size_t(map.width) * map.height);
+    const int green = image.num_channels() >= 3 ? 1 : 0, blue = image.num_channels() >= 3 ? 2 : 0;
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            // Longitude runs clockwise in pictures of this kind and counter-clockwise here; the middle column looks along +Y.
+            const int column = ((map.width - 1 - x) + map.width / 4) % map.width;
+            const float* pixel = image.pixel(column, y);
+            const Rgb value{pixel[0], pixel[green], pixel[blue]};
+            for (const float component : {value.r, value.g, value.b})
+                if (!(component >= 0.0f) || !std::isfinite(component))
+                    throw InputError(fmt::format("{}: texel ({}, {}) is {}; radiance must be finite and at least 0", path.string(),
+                                                 column, y, component));
+            map.texels.push_back(value);
+        }
+}
+
+/// Weight of each texel for drawing directions: the mean of its 3x3 neighbourhood, since bilinear lookup spreads it, times its
+/// solid angle.
+void build_tables(EnvironmentMap& map) {
+    const auto luminance = [&](int x, int y) {
+        const int column = (x + map.width) % map.width, row = std::min(std::max(y, 0), map.height - 1);
+        const Rgb& texel = map.texels[std::size_t(row) * map.width + column];
+        return 0.2126 * double(texel.r) + 0.7152 * double(texel.g) + 0.0722 * double(texel.b);
+    };
+    std::vector<double> row_weight(map.height);
+    double total = 0.0;
+    for (int y = 0; y < map.height; ++y) {
+        std::vector<double> sums(std::size_t(map.width) + 1, 0.0);
+        for (int x = 0; x < map.width; ++x) {
+            double neighbourhood = 0.0;
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) neighbourhood += luminance(x + i, y + j);
+            sums[std::size_t(x) + 1] = sums[x] + neighbourhood;
+        }
+        const double row_sum = sums.back();
+        for (int x = 0; x <= map.width; ++x)
+            map.column_cdf.push_back(float(row_sum > 0.0 ? sums[x] / row_sum : double(x) / map.width));
+        row_weight[y] = row_sum * std::sin(units::pi * (y + 0.5) / map.height);
+        total += row_weight[y];
+    }
+    double sum = 0.0;
+    map.row_cdf.push_back(0.0f);
+    for (int y = 0; y < map.height; ++y) {
+        sum += row_weight[y];
+        map.row_cdf.push_back(float(total > 0.0 ? sum / total : double(y + 1) / map.height));
+    }
+}
+
+}  // namespace
+
+EnvironmentMap make_environment(const EnvironmentDescription& description) {
+    EnvironmentMap map;
+    map.rotation_rad = units::rad_from_deg(description.rotate_deg);
+    switch (description.kind) {
+        case EnvironmentKind::studio: fill_studio(map); break;
+        case EnvironmentKind::constant: fill_constant(map); break;
+        case EnvironmentKind::file: fill_from_file(map, description.file); break;
+    }
+    for (Rgb& texel : map.texels) {
+        const float scale = float(description.radiance);
+        texel = {texel.r * scale, texel.g * scale, texel.b * scale};
+    }
+    build_tables(map);
+    return map;
+}
+
+}  // namespace opal

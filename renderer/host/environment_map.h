@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "formats/scene.h"
+#include "renderer/core/environment.h"
+
+namespace opal {
+
+/// Owns the environment: its picture and the tables that draw directions from it.
+struct EnvironmentMap {
+    int width = 0, height = 0;
+    double rotation_rad = 0.0;
+    std::vector<Rgb> texels;
+    std::vector<float> row_cdf, column_cdf;
+
+    EnvironmentView view() const {
+        return {texels.data(), row_cdf.data(), column_cdf.data(), width, height, float(rotation_rad)};
+    }
+};
+
+/// Loads or builds the environment of a scene: a constant, the built-in studio, or a latitude-longitude file (.exr, .hdr). Throws
+/// InputError for unreadable files and for negative or NaN texels, naming the texel.
+EnvironmentMap make_environment(const EnvironmentDescription& description);
+
+/// Radiance of the built-in studio from a unit direction (Z up, camera in front at -Y): a large key soft box at the upper left, a
+/// strip at the right, a low fill from the front and a rim light behind, in a dim surround. Linear sRGB times D65.
+Rgb studio_radiance(Vec3 direction);
+
+}  // namespace opal

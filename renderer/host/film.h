@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "formats/image.h"
+#include "renderer/core/path_tracer.h"
+
+namespace opal {
+
+/// Spectral bins of 10 nm, centred at 360, 370 ... 830 nm; the two at the ends are half as wide.
+inline constexpr int num_bins = 48;
+
+/// Sums over the whole picture, per bin: for the report and for checking energy without storing spectra per pixel.
+struct SpectrumTotals {
+    std::array<double, num_bins> radiance = {};
+    std::array<double, num_bins> radiance_squared = {};  ///< of single samples
+    std::array<double, num_bins> truncated = {};         ///< throughput lost at the bounce limit
+    double truncated_y = 0.0;                            ///< the same as luminance under white of radiance 1
+    std::uint64_t samples = 0;
+
+    void add(const SpectrumTotals& other);
+};
+
+/// One sample's light per bin and in XYZ.
+struct FilmSample {
+    double x = 0.0, y = 0.0, z = 0.0;
+};
+
+/// Accumulates samples per pixel: linear sRGB sums in double precision, sums of squares for the variance, counts, optional spectra.
+class Film {
+  public:
+    Film(int width, int height, bool spectral);
+
+    /// Adds one path's result to a pixel and to `totals`. Pixels may be filled from different threads, each from one at a time.
+    void add(const SpectrumTables& tables, std::uint32_t pixel, const PathWavelengths& wavelengths, const PathResult& result,
+             SpectrumTotals& totals);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::uint32_t samples(std::uint32_t pixel) const { return pixels_[pixel].samples; }
+    std::uint64_t total_samples() const;
+
+    /// Channels R, G, B (means), variance.R, variance.G, variance.B (of the means), sample_count, and S0.<nm>nm where spectral.
+    Image to_image() const;
+
+  private:
+    struct Pixel {
+        double sum[3] = {};
+        double square[3] = {};
+        std::uint32_t samples = 0;
+    };
+
+    int width_, height_;
+    bool spectral_;
+    std::vector<Pixel> pixels_;
+    std::vector<float> spectra_;
+};
+
+/// Bin of a wavelength and the bin's width.
+int spectral_bin(double wavelength_nm);
+double bin_width_nm(int bin);
+double bin_centre_nm(int bin);
+
+}  // namespace opal

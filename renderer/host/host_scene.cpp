@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/host/host_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/error.h"
+#include "formats/opal_asset.h"
+#include "formats/units.h"
+#include "renderer/host/opal_surface.h"
+
+namespace opal {
+namespace {
+
+Vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+
+/// The families a grain crossing tests: all inside the limiting sphere, or the strongest where there are more than a path can mark.
+int choose_pairs(const CrystalParameters& crystal, PlanePair* chosen, int& reciprocal_points, std::vector<std::string>& notices) {
+    std::vector<PlanePair> pairs(max_plane_pairs);
+    const int inside = reciprocal_pairs(crystal, units::wavelength_min_nm, pairs.data(), max_plane_pairs);
+    reciprocal_points = 2 * inside + 1;
+    pairs.resize(std::size_t(std::min(inside, max_plane_pairs)));
+    if (inside > max_tested_pairs) {
+        std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.epsilon > b.epsilon; });
+        pairs.resize(max_tested_pairs);
+        notices.push_back(fmt::format("{} families of planes can diffract visible light; the {} strongest are used (next: {:.2g} of the first)",
+                                      inside, max_tested_pairs, double(pairs.back().epsilon) / double(pairs.front().epsilon)));
+    }
+    std::copy(pairs.begin(), pairs.end(), chosen);
+    return static_cast<int>(pairs.size());
+}
+
+}  // namespace
+
+Camera make_camera(const CameraDescription& description, int width, int height) {
+    Camera camera;
+    camera.position = to_vec3(description.position_mm);
+    const Vec3 view = to_vec3(description.target_mm) - camera.position;
+    camera.forward = normalize(view);
+    const Vec3 right = normalize(cross(camera.forward, to_vec3(description.up)));
+    const Vec3 down = cross(camera.forward, right);
+    camera.orthographic = description.kind == CameraKind::orthographic;
+    const double picture_height = camera.orthographic ? description.view_height_mm
+                                                      : 2.0 * std::tan(0.5 * units::rad_from_deg(description.vertical_fov_deg));
+    camera.right = float(picture_height * width / height) * right;
+    camera.down = float(picture_height) * down;
+    camera.aperture_radius_mm = float(description.aperture_radius_mm);
+    camera.focus_mm = description.focus_mm > 0.0 ? float(description.focus_mm) : length(view);
+    return camera;
+}
+
+HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
+    : spectra_(make_spectrum_tables()), environment_(make_environment(description.environment)) {
+    for (const MaterialDescription& material : description.materials)
+        materials_.push_back({{float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])}});
+    for (const ObjectDescription& object : description.objects) {
+        if (object.kind == ObjectKind::opal)
+            add_opal(object, description.opal, notices);
+        else
+            add_mesh(object, description.materials);
+    }
+    for (const MeshData& mesh : meshes_) mesh_views_.push_back(mesh.view());
+
+    const RenderDescription& render = description.render;
+    view_.camera = make_camera(description.camera, render.width, render.height);
+    view_.spectra = spectra_.view();
+    view_.environment = environment_.view();
+    view_.meshes = mesh_views_.data();
+    view_.materials = materials_.data();
+    view_.width = render.width;
+    view_.height = render.height;
+    view_.max_bounces = render.max_bounces;
+    view_.wavelengths = 1 + description.opal.companions;
+    view_.seed = render.seed;
+    view_.stratified = render.sampler == SamplerKind::stratified;
+    view_.tent_filter = render.filter == FilterKind::tent;
+}
+
+void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
+    ReadOpalOptions options;
+    options.orientation_seed = object.orientation_seed;
+    std::vector<std::string> file_notices;
+    const OpalAsset asset = read_opal_asset(object.file, options, file_notices);
+    for (const std::string& notice : file_notices) notices.push_back(object.file.string() + ": " + notice);
+
+    OpalView& opal = view_.opal;
+    opal.present = true;
+    opal.diffraction = settings.diffraction == DiffractionModel::two_beam;
+    opal.world_from_object = object_transform(object);
+
+    meshes_.push_back(surface_from_level_set(*asset.shape, object.file.string()));
+    transform_mesh(meshes_.back(), opal.world_from_object);
+
+    grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
+    opal.grains = grains_->field();
+    for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
+    opal.orientations = orientations_.data();
+
+    recipe_toml_ = asset.recipe_toml;
+    const OpalConstants& constants = asset.constants;
+    const CrystalParameters crystal{constants.sphere_diameter_nm, constants.n_sphere, constants.n_medium};
+    opal.n_eff = float(effective_index(crystal));
+    opal.num_pairs = choose_pairs(crystal, opal.pairs, reciprocal_points_, notices);
+    opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
+    for (int i = 0; i < spectrum_samples; ++i)
+        sigma_a_per_mm_.push_back(float(constants.sigma_a_per_mm.at(units::wavelength_min_nm + i)));
+    opal.sigma_a_per_mm = sigma_a_per_mm_.data();
+    opal.sigma_s_rayleigh_400nm_per_mm = float(constants.sigma_s_rayleigh_400nm_per_mm);
+    opal.sigma_s_mie_per_mm = float(constants.sigma_s_mie_per_mm);
+    opal.mie_asymmetry = float(constants.mie_asymmetry);
+}
+
+void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {
+    MeshData mesh;
+    switch (object.kind) {
+        case ObjectKind::plane: mesh = make_plane(object.size_mm); break;
+        case ObjectKind::sphere: mesh = make_sphere(object.radius_mm); break;
+        case ObjectKind::cylinder: mesh = make_cylinder(object.radius_mm, object.height_mm, object.bevel_mm); break;
+        default: mesh = load_mesh(object.file); break;
+    }
+    transform_mesh(mesh, object_transform(object));
+    const auto found = std::find_if(materials.begin(), materials.end(),
+                                    [&](const MaterialDescription& material) { return material.name == object.material; });
+    mesh.material = static_cast<int>(found - materials.begin());
+    meshes_.push_back(std::move(mesh));
+}
+
+}  // namespace opal

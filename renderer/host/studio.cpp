@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/units.h"
+#include "renderer/host/environment_map.h"
+
+namespace opal {
+namespace {
+
+/// A rectangular soft box at infinity, seen under an angle, with a soft edge.
+struct SoftBox {
+    double azimuth_deg;    ///< of its centre, counter-clockwise from +X
+    double elevation_deg;  ///< above the horizon
+    double half_width_deg, half_height_deg;
+    double edge;  ///< fraction of the half size over which it fades
+    Rgb radiance;
+};
+
+constexpr SoftBox soft_boxes[] = {
+    {152.0, 48.0, 20.0, 15.0, 0.12, {15.0f, 14.6f, 14.0f}},
+    {-12.0, 30.0, 6.0, 24.0, 0.15, {9.0f, 9.2f, 9.6f}},
+    {-88.0, 66.0, 16.0, 9.0, 0.2, {7.0f, 7.0f, 7.0f}},
+    {75.0, 34.0, 26.0, 6.0, 0.2, {6.0f, 6.0f, 6.2f}},
+};
+
+float fade(double offset, double half_size, double edge) {
+    const double t = (half_size - std::abs(offset)) / (edge * half_size);
+    const double clamped = t < 0.0 ? 0.0 : (t > 1.0 ? 1.0 : t);
+    return float(clamped * clamped * (3.0 - 2.0 * clamped));
+}
+
+float coverage(const SoftBox& box, Vec3 direction) {
+    const double azimuth = units::rad_from_deg(box.azimuth_deg), elevation = units::rad_from_deg(box.elevation_deg);
+    const Vec3 centre{float(std::cos(elevation) * std::cos(azimuth)), float(std::cos(elevation) * std::sin(azimuth)),
+                      float(std::sin(elevation))};
+    const Vec3 right = normalize(cross({0.0f, 0.0f, 1.0f}, centre));
+    const Vec3 up = cross(centre, right);
+    const double depth = double(dot(direction, centre));
+    if (depth <= 0.0) return 0.0f;
+    const double x = double(dot(direction, right)) / depth, y = double(dot(direction, up)) / depth;
+    return fade(x, std::tan(units::rad_from_deg(box.half_width_deg)), box.edge) *
+           fade(y, std::tan(units::rad_from_deg(box.half_height_deg)), box.edge);
+}
+
+}  // namespace
+
+Rgb studio_radiance(Vec3 direction) {
+    // A dim room, a little brighter towards the ceiling.
+    const float surround = 0.10f + 0.10f * max_of(0.0f, direction.z);
+    Rgb sum{surround, surround, surround * 1.04f};
+    for (const SoftBox& box : soft_boxes) {
+        const float covered = coverage(box, direction);
+        sum.r += covered * box.radiance.r;
+        sum.g += covered * box.radiance.g;
+        sum.b += covered * box.radiance.b;
+    }
+    return sum;
+}
+
+}  // namespace opal

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/host/tone_mapping.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace opal {
+namespace {
+
+float srgb_encode(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+/// The identity up to `knee`, then smoothly towards 1.
+float shoulder(float value) {
+    constexpr float knee = 0.7f;
+    if (value <= knee) return value;
+    return knee + (1.0f - knee) * (1.0f - std::exp(-(value - knee) / (1.0f - knee)));
+}
+
+}  // namespace
+
+Image tone_mapped(const Image& linear, double exposure_ev) {
+    const float exposure = float(std::exp2(exposure_ev));
+    Image display;
+    display.width = linear.width;
+    display.height = linear.height;
+    display.channel_names = {"R", "G", "B"};
+    display.pixels.reserve(std::size_t(linear.width) * linear.height * 3);
+    for (int y = 0; y < linear.height; ++y)
+        for (int x = 0; x < linear.width; ++x) {
+            const float* pixel = linear.pixel(x, y);
+            float rgb[3] = {pixel[0] * exposure, pixel[1] * exposure, pixel[2] * exposure};
+            const float luminance = std::max(0.0f, 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+            const float lowest = std::min({rgb[0], rgb[1], rgb[2]});
+            if (lowest < 0.0f) {
+                const float keep = luminance > 0.0f ? luminance / (luminance - lowest) : 0.0f;
+                for (float& c : rgb) c = std::max(0.0f, luminance + keep * (c - luminance));
+            }
+            const float brightest = std::max({rgb[0], rgb[1], rgb[2]});
+            const float scale = brightest > 0.0f ? shoulder(brightest) / brightest : 0.0f;
+            for (const float c : rgb) display.pixels.push_back(srgb_encode(c * scale));
+        }
+    return display;
+}
+
+}  // namespace opal
