@@ -9,7 +9,7 @@ add_library(opal_compile_options INTERFACE)
 target_compile_options(opal_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Werror
   # Mathematics without errno and trap semantics vectorizes; values are unchanged.
-  -fno-math-errno -fno-trapping-math)
+  -fno-math-errno -fno-trapping-math -fopenmp-simd)
 
 if(OPAL_AVX2 AND EXISTS /proc/cpuinfo)
   file(READ /proc/cpuinfo opal_cpuinfo)

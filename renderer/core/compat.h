@@ -9,5 +9,12 @@
 #define OPAL_HD
 #endif
 
+/// Before a short loop over lanes without branches or calls: asks the host compiler to vectorize it.
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define OPAL_SIMD _Pragma("omp simd")
+#else
+#define OPAL_SIMD
+#endif
+
 #include <math.h>
 #include <stdint.h>

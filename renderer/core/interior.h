@@ -55,16 +55,17 @@ struct InteriorEvent {
 
 /// Reflection odds of every family of planes along one stretch of one grain.
 struct GrainOdds {
-    PileOdds odds[max_tested_pairs][num_lanes];
+    PileOdds odds[max_tested_pairs];
     int pair[max_tested_pairs];
     int count = 0;
     Lanes scale = Lanes::all(1.0f);  ///< below 1 where the reflectances would sum to more than 1
     Lanes total;                     ///< probability of turning anywhere on the stretch
 
-    OPAL_HD float turned_before(int lane, float fraction) const {
+    /// Probability of passing a fraction of the stretch without turning.
+    OPAL_HD float passed(int lane, float fraction) const {
         float sum = 0.0f;
-        for (int i = 0; i < count; ++i) sum += odds[i][lane].reflectance(fraction);
-        return scale.v[lane] * sum;
+        for (int i = 0; i < count; ++i) sum += odds[i].reflectance(lane, fraction);
+        return max_of(0.0f, 1.0f - scale.v[lane] * sum);
     }
 };
 
@@ -74,20 +75,20 @@ OPAL_HD inline float draw_coherence_nm(float mean_nm, PathRandom& random) { retu
 OPAL_HD inline void evaluate_grain(const OpalView& opal, const PathWavelengths& wavelengths, Vec3 lattice_direction, float chord_nm,
                                    float coherence_nm, uint64_t tested_pairs, GrainOdds& result) {
     result.count = 0;
-    result.total = Lanes{};
+    float reflected[PileOdds::size] = {};
     for (int k = 0; k < opal.num_pairs; ++k) {
         const PlanePair& pair = opal.pairs[k];
         const float cosine = fabsf(dot(lattice_direction, pair.normal));
         if (((tested_pairs >> k) & 1u) != 0 || cosine < 1.0e-4f) continue;
         BeamGeometry beam{cosine, pair.g_per_nm, pair.epsilon, opal.n_eff, 0.0f, 1.0f};
         set_blocks(beam, chord_nm, coherence_nm);
-        PileOdds* odds = result.odds[result.count];
-        for (int i = 0; i < wavelengths.count; ++i) {
-            odds[i] = pile_odds(beam, wavelengths.wavelength_nm[i]);
-            result.total.v[i] += odds[i].reflectance();
-        }
+        PileOdds& pile = result.odds[result.count];
+        if (!pile_odds(beam, wavelengths.wavelength_nm, pile)) continue;
+        OPAL_SIMD
+        for (int i = 0; i < PileOdds::size; ++i) reflected[i] += pile.odds[i] / (1.0f + pile.odds[i]);
         result.pair[result.count++] = k;
     }
+    for (int i = 0; i < num_lanes; ++i) result.total.v[i] = 0.5f * (reflected[i] + reflected[num_lanes + i]);
     for (int i = 0; i < wavelengths.count; ++i) {
         result.scale.v[i] = result.total.v[i] > 1.0f ? 1.0f / result.total.v[i] : 1.0f;
         result.total.v[i] = min_of(result.total.v[i], 1.0f);
@@ -108,14 +109,14 @@ OPAL_HD inline Turn draw_turn(const GrainOdds& grain, PathRandom& random) {
     u /= grain.scale.v[0];
     Turn turn;
     for (int i = 0; i < grain.count; ++i) {
-        turn.index = i;
-        const float reflectance = grain.odds[i][0].reflectance();
+        const float reflectance = grain.odds[i].reflectance(0);
+        if (reflectance > 0.0f) turn.index = i;  // rounding can carry u past the last family; never onto one that does not reflect
         if (u < reflectance) break;
         u -= reflectance;
     }
-    const PileOdds& odds = grain.odds[turn.index][0];
-    const float reflectance_s = 0.5f * odds.s / (1.0f + odds.s), reflectance_p = 0.5f * odds.p / (1.0f + odds.p);
-    const float n = random.next() * (reflectance_s + reflectance_p) < reflectance_s ? odds.s : odds.p;
+    const float s = grain.odds[turn.index].s(0), p = grain.odds[turn.index].p(0);
+    const float reflectance_s = s / (1.0f + s), reflectance_p = p / (1.0f + p);
+    const float n = random.next() * (reflectance_s + reflectance_p) < reflectance_s ? s : p;
     const float reached = random.next() * n / (1.0f + n);
     turn.fraction = n > 0.0f ? min_of(1.0f, reached / ((1.0f - reached) * n)) : 1.0f;
     return turn;
@@ -169,10 +170,10 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                 const Turn turn = draw_turn(grain, random);
                 const float turn_mm = turn.index >= 0 ? entered * scale + turn.fraction * chord_mm : 3.0e38f;
                 if (turn_mm < end_mm) {
-                    const PileOdds* odds = grain.odds[turn.index];
-                    const float hero = grain.scale.v[0] * odds[0].turning_density(turn.fraction);
+                    const PileOdds& odds = grain.odds[turn.index];
+                    const float hero = grain.scale.v[0] * odds.turning_density(0, turn.fraction);
                     for (int i = 1; i < weights.count; ++i)
-                        weights.ratio.v[i] *= grain.scale.v[i] * odds[i].turning_density(turn.fraction) / hero;
+                        weights.ratio.v[i] *= grain.scale.v[i] * odds.turning_density(i, turn.fraction) / hero;
                     const int k = grain.pair[turn.index];
                     const Vec3 normal = opal.world_from_object.world_from_local_direction(orientation.rotate(opal.pairs[k].normal));
                     state.tested_pairs |= uint64_t(1) << k;
@@ -180,9 +181,10 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                     attenuate(medium, turn_mm, weights);
                     return {InteriorEventKind::diffraction, turn_mm, normalize(mirror(ray.direction, normal))};
                 }
-                const float passed = min_of(1.0f, (end_mm - entered * scale) / chord_mm);
-                const float hero = 1.0f - grain.turned_before(0, passed);
-                for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= (1.0f - grain.turned_before(i, passed)) / hero;
+                const float fraction = min_of(1.0f, (end_mm - entered * scale) / chord_mm);
+                // Rounding can let a hero pass whose probability of it rounds to 0; its companions then pass like it.
+                const float hero = grain.passed(0, fraction);
+                for (int i = 1; i < weights.count && hero > 0.0f; ++i) weights.ratio.v[i] *= grain.passed(i, fraction) / hero;
             }
             if (next == 0 || reached * scale >= end_mm) break;
             state.grain = next;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/cpu/embree_scene.h"
 
+#include <tbb/task_arena.h>
+
 #include <limits>
 
 #include "formats/error.h"
@@ -26,8 +28,7 @@ void fill_ray(RTCRay& target, const Ray& ray) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
-    // One building thread: the tree, and with it the order in which ties are met, must not depend on how many cores there are.
-    device_ = rtcNewDevice("threads=1,set_affinity=0");
+    device_ = rtcNewDevice(nullptr);
     if (!device_) throw SystemError("Embree could not be started");
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
@@ -45,7 +46,9 @@ EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
     }
-    rtcCommitScene(scene_);
+    // Built by one thread: the tree, and with it the order in which ties are met, must not depend on how many cores there are. (Embree's
+    // own thread limit would hold for the whole process.)
+    tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
     if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw SystemError("Embree could not build the scene");
 }
 

@@ -41,7 +41,7 @@ void fill_from_file(EnvironmentMap& map, const std::filesystem::path& path) {
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
             // Longitude runs clockwise in pictures of this kind and counter-clockwise here; the middle column looks along +Y.
-            const int column = ((map.width - 1 - x) + map.width / 4) % map.width;
+            const int column = ((map.width - 1 - x) + 3 * map.width / 4) % map.width;
             const float* pixel = image.pixel(column, y);
             const Rgb value{pixel[0], pixel[green], pixel[blue]};
             for (const float component : {value.r, value.g, value.b})

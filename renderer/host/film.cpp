@@ -22,7 +22,7 @@ void SpectrumTotals::add(const SpectrumTotals& other) {
         radiance_squared[i] += other.radiance_squared[i];
         truncated[i] += other.truncated[i];
     }
-    truncated_y += other.truncated_y;
+    for (int c = 0; c < 3; ++c) truncated_rgb[c] += other.truncated_rgb[c];
     samples += other.samples;
 }
 
@@ -34,6 +34,7 @@ Film::Film(int width, int height, bool spectral)
 void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const PathWavelengths& wavelengths, const PathResult& result,
                SpectrumTotals& totals) {
     double x = 0.0, y = 0.0, z = 0.0;
+    double lost_x = 0.0, lost_y = 0.0, lost_z = 0.0;
     std::array<double, num_lanes> in_bin = {};
     std::array<int, num_lanes> bins = {};
     for (int i = 0; i < wavelengths.count; ++i) {
@@ -48,7 +49,10 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const PathWave
         totals.radiance[bins[i]] += in_bin[i];
         const double truncated = double(result.truncated.v[i]) * per_density;
         totals.truncated[bins[i]] += truncated / bin_width_nm(bins[i]);
-        totals.truncated_y += truncated * double(observer.y) * double(table_at(tables.white, wavelengths.wavelength_nm[i]));
+        const double lost = truncated * double(table_at(tables.white, wavelengths.wavelength_nm[i]));
+        lost_x += lost * double(observer.x);
+        lost_y += lost * double(observer.y);
+        lost_z += lost * double(observer.z);
         if (spectral_) spectra_[std::size_t(pixel) * num_bins + bins[i]] += float(in_bin[i]);
     }
     // Lanes of one sample can share a bin: squares are of the sample's whole contribution to it.
@@ -63,6 +67,10 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const PathWave
         if (first) totals.radiance_squared[bins[i]] += whole * whole;
     }
     ++totals.samples;
+    const Rgb3d lost_rgb = linear_srgb_from_xyz(lost_x, lost_y, lost_z);
+    totals.truncated_rgb[0] += lost_rgb.r;
+    totals.truncated_rgb[1] += lost_rgb.g;
+    totals.truncated_rgb[2] += lost_rgb.b;
 
     const Rgb3d rgb = linear_srgb_from_xyz(x, y, z);
     Pixel& target = pixels_[pixel];

@@ -20,7 +20,7 @@ struct SpectrumTotals {
     std::array<double, num_bins> radiance = {};
     std::array<double, num_bins> radiance_squared = {};  ///< of single samples
     std::array<double, num_bins> truncated = {};         ///< throughput lost at the bounce limit
-    double truncated_y = 0.0;                            ///< the same as luminance under white of radiance 1
+    std::array<double, 3> truncated_rgb = {};            ///< the same in linear sRGB under white of radiance 1
     std::uint64_t samples = 0;
 
     void add(const SpectrumTotals& other);

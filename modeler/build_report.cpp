@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "modeler/build_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "formats/command.h"
+#include "formats/report.h"
+#include "formats/units.h"
+
+namespace opal {
+
+double BuildReport::total_seconds() const {
+    double sum = 0.0;
+    for (const StageTime& time : stages) sum += time.seconds;
+    return sum;
+}
+
+double mean_grain_diameter_mm(const OpalAsset& asset) {
+    if (asset.num_grains() == 0) return 0.0;
+    const double volume_mm3 = static_cast<double>(asset.grain_id->activeVoxelCount()) * asset.grain_id->voxelSize().product();
+    return std::cbrt(6.0 * volume_mm3 / (units::pi * static_cast<double>(asset.num_grains())));
+}
+
+nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset) {
+    nlohmann::json seconds = nlohmann::json::object();
+    for (const StageTime& time : report.stages) seconds[time.stage] = time.seconds;
+    seconds["total"] = report.total_seconds();
+
+    nlohmann::json json;
+    json["seconds"] = seconds;
+    json["peak_memory_bytes"] = peak_memory_bytes();
+    json["counts"] = {{"sites", asset.sites.size()},
+                      {"hidden_sites", report.hidden_sites},
+                      {"bonds", report.bonds},
+                      {"kept_bonds", report.kept_bonds},
+                      {"mean_degree", report.mean_degree},
+                      {"grains", asset.num_grains()},
+                      {"voxels", report.voxels},
+                      {"leaves", report.leaves},
+                      {"tiles", report.tiles},
+                      {"largest_grain_fraction", report.largest_grain_fraction}};
+    json["shape_volume_mm3"] = report.shape_volume_mm3;
+    json["voxel_size_mm"] = asset.grain_id->voxelSize().x();
+    json["mean_grain_diameter_mm"] = mean_grain_diameter_mm(asset);
+    json["shortest_site_distance_mm"] = report.shortest_site_distance_mm;
+    json["relative_radius"] = report.relative_radius;
+    json["bond_probability"] = report.bond_probability;
+    json["percolation_threshold"] =
+        report.percolation_threshold ? nlohmann::json(*report.percolation_threshold) : nlohmann::json();
+    json["warnings"] = report.warnings;
+    json["versions"] = version_report();
+    json["seed"] = asset.seed;
+    json["recipe"] = asset.recipe_toml;
+    return json;
+}
+
+std::string report_summary(const BuildReport& report, const OpalAsset& asset) {
+    std::string text = fmt::format(
+        "grains   {} from {} sites ({} hidden), {:.2f} mm across on average, largest {:.1f} % of the sites\n", asset.num_grains(),
+        asset.sites.size(), report.hidden_sites, mean_grain_diameter_mm(asset), 100.0 * report.largest_grain_fraction);
+    text +=
+        fmt::format("bonds    {} of {} kept ({:.2f} neighbours per site)\n", report.kept_bonds, report.bonds, report.mean_degree);
+    text += fmt::format("voxels   {} of {:.4g} mm inside the shape, in {} leaves and {} tiles\n", report.voxels,
+                        asset.grain_id->voxelSize().x(), report.leaves, report.tiles);
+    text += fmt::format("time     {}, at most {:.0f} MB of memory\n", format_duration(report.total_seconds()),
+                        static_cast<double>(peak_memory_bytes()) / 1.0e6);
+    return text;
+}
+
+}  // namespace opal

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "modeler/command_line.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "formats/atomic_file.h"
+#include "formats/command.h"
+#include "formats/error.h"
+#include "formats/opal_asset.h"
+#include "formats/recipe.h"
+#include "formats/report.h"
+#include "modeler/build.h"
+#include "modeler/info.h"
+
+namespace opal {
+namespace {
+
+struct BuildArguments {
+    std::string recipe_file;
+    std::string output_file;
+    std::vector<std::string> overrides;
+    std::string report_file;
+    int threads = 0;
+};
+
+struct FileArguments {
+    std::string file;
+    bool json = false;
+};
+
+constexpr const char* help_footer =
+    R"(Units: lengths mm (spheres and wavelengths nm, coherence length um), coefficients per mm, angles degrees, Z up.
+Exit codes: 0 success, 2 bad input, 1 other failures.
+Examples:
+  opal-model build recipe.toml -o opal.vdb
+  opal-model build recipe.toml -o opal.vdb --set grains.num_sites=2000 --set shape.size_mm=[14.0,10.0,5.0] --report report.json
+  opal-model info opal.vdb
+  opal-model check opal.vdb)";
+
+void say(const std::string& message) {
+    fmt::print(stderr, "opal-model: {}\n", message);
+    std::fflush(stderr);
+}
+
+int run_build(const BuildArguments& arguments) {
+    const std::filesystem::path output(arguments.output_file);
+    if (output.extension() != ".vdb") throw InputError(fmt::format("output {}: the name must end in .vdb", output.string()));
+    require_writable(output);
+    if (!arguments.report_file.empty()) require_writable(arguments.report_file);
+    std::unique_ptr<tbb::global_control> thread_limit;
+    if (arguments.threads > 0)
+        thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                             static_cast<std::size_t>(arguments.threads));
+    catch_interrupts();
+    BuiltOpal built = build_opal(read_recipe(arguments.recipe_file, arguments.overrides), say);
+
+    throw_if_interrupted();
+    say("write");
+    const Stopwatch watch;
+    write_opal_asset(built.asset, output);
+    built.report.stages.push_back({"write", watch.seconds()});
+    if (!arguments.report_file.empty()) write_report(arguments.report_file, report_to_json(built.report, built.asset));
+    fmt::print("{}file     {}, {:.2f} MB\n", report_summary(built.report, built.asset), output.string(),
+               static_cast<double>(std::filesystem::file_size(output)) / 1.0e6);
+    return 0;
+}
+
+int run_info(const FileArguments& arguments) {
+    std::vector<std::string> notices;
+    const OpalAsset asset = read_opal_asset(arguments.file, {}, notices);
+    for (const std::string& notice : notices) say("notice: " + notice);
+    nlohmann::json description = describe_opal(asset);
+    if (arguments.json) {
+        description["notices"] = notices;
+        fmt::print("{}\n", description.dump(2));
+    } else {
+        fmt::print("{}", opal_info_text(description));
+    }
+    return 0;
+}
+
+int run_check(const FileArguments& arguments) {
+    const AssetCheck check = check_opal_asset(arguments.file);
+    for (const std::string& error : check.errors) fmt::print("error: {}\n", error);
+    for (const std::string& advice : check.advice) fmt::print("advice: {}\n", advice);
+    if (!check.errors.empty())
+        throw InputError(
+            fmt::format("{}: {} problem{} found", arguments.file, check.errors.size(), check.errors.size() == 1 ? "" : "s"));
+    fmt::print("{}: is a valid opal\n", arguments.file);
+    return 0;
+}
+
+void add_build(CLI::App& app, BuildArguments& arguments) {
+    CLI::App* const build = app.add_subcommand("build", "Build an opal .vdb from a recipe");
+    build->add_option("RECIPE", arguments.recipe_file, "recipe file (TOML)")->required();
+    build->add_option("-o,--output", arguments.output_file, "file to write, ending in .vdb")->required()->type_name("OUT.vdb");
+    build->add_option("--set", arguments.overrides, "override a recipe key, e.g. grains.num_sites=1000; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    build->add_option("--threads", arguments.threads, "threads to use (default: all); the result is the same for any number")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+    build->add_option("--report", arguments.report_file, "write times, counts, versions and the resolved recipe as JSON")
+        ->type_name("FILE.json");
+    build->footer(help_footer);
+}
+
+void add_file_command(CLI::App& app, const std::string& name, const std::string& what, FileArguments& arguments, bool with_json) {
+    CLI::App* const command = app.add_subcommand(name, what);
+    command->add_option("FILE", arguments.file, "opal .vdb")->required();
+    if (with_json) command->add_flag("--json", arguments.json, "print JSON instead");
+    command->footer(help_footer);
+}
+
+}  // namespace
+
+int run_opal_model(int argc, char** argv) {
+    CLI::App app("Models opal: a recipe becomes a .vdb of grains for opal-render, Blender and Houdini.", "opal-model");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "opal-model " + version_report()["opal"].get<std::string>());
+    app.footer(help_footer);
+    BuildArguments build;
+    FileArguments info, check;
+    add_build(app, build);
+    add_file_command(app, "info", "Say what an opal .vdb holds (sizes in mm)", info, true);
+    add_file_command(app, "check", "Check an opal .vdb against the schema; exit code 2 where it is unusable", check, false);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& request) {
+        return app.exit(request);  // --help and --version print and succeed
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{} (see opal-model --help)", error.what()));
+    }
+    if (app.got_subcommand("build")) return run_build(build);
+    if (app.got_subcommand("info")) return run_info(info);
+    return run_check(check);
+}
+
+}  // namespace opal

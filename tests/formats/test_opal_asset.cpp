@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "expect_error.h"
+#include "formats/opal_asset.h"
+#include "formats/opal_asset_io.h"
+
+namespace opal {
+namespace {
+
+class OpalAssetTest : public testing::Test {
+  protected:
+    OpalAssetTest() {
+        initialize_openvdb();
+        std::filesystem::create_directories(folder_);
+    }
+    ~OpalAssetTest() override { std::filesystem::remove_all(folder_); }
+
+    /// A ball of radius 2 mm cut into two grains by the plane x = 0.
+    static OpalAsset two_grain_ball() {
+        OpalAsset asset;
+        asset.shape = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(2.0f, openvdb::Vec3f(0.0f), 0.1f);
+        asset.grain_id = openvdb::Int32Grid::create(0);
+        asset.grain_id->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
+        auto accessor = asset.grain_id->getAccessor();
+        for (int i = -20; i <= 20; ++i)
+            for (int j = -20; j <= 20; ++j)
+                for (int k = -20; k <= 20; ++k)
+                    if (i * i + j * j + k * k < 400) accessor.setValueOn({i, j, k}, i < 0 ? 1 : 2);
+        asset.sites = {{{-1.0, 0.0, 0.0}, 0.125f, 1}, {{1.0, 0.1, 0.2}, -0.25f, 2}, {{1.0, -0.3, 0.7}, 0.0f, 2}};
+        asset.grain_orientations = {random_orientation(3, false, 1), random_orientation(3, false, 2)};
+        asset.constants.sigma_a_per_mm = absorber_spectrum("carbon", "", 0.4);
+        asset.recipe_toml = "[shape]\nkind = \"sphere\"\n";
+        asset.seed = 3;
+        return asset;
+    }
+
+    OpalAsset read(const std::filesystem::path& path) {
+        notices_.clear();
+        return read_opal_asset(path, {}, notices_);
+    }
+
+    void write_foreign(const std::filesystem::path& path, const openvdb::GridBase::Ptr& grid, const std::string& name) {
+        grid->setName(name);
+        openvdb::io::File file(path.string());
+        file.write({grid});
+        file.close();
+    }
+
+    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "opal_asset_test";
+    std::vector<std::string> notices_;
+};
+
+TEST_F(OpalAssetTest, RoundTripKeepsEverything) {
+    const OpalAsset asset = two_grain_ball();
+    write_opal_asset(asset, folder_ / "a.vdb");
+    const OpalAsset back = read(folder_ / "a.vdb");
+    EXPECT_TRUE(notices_.empty());
+    EXPECT_EQ(back.schema_version, opal_schema_version);
+    EXPECT_EQ(back.seed, 3u);
+    EXPECT_EQ(back.recipe_toml, asset.recipe_toml);
+    EXPECT_EQ(back.constants.sigma_a_per_mm.value, asset.constants.sigma_a_per_mm.value);
+    ASSERT_EQ(back.sites.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_LT((back.sites[i].position_mm - asset.sites[i].position_mm).length(), 1e-6);
+        EXPECT_EQ(back.sites[i].weight_mm, asset.sites[i].weight_mm);
+        EXPECT_EQ(back.sites[i].grain, asset.sites[i].grain);
+    }
+    for (std::size_t g = 0; g < 2; ++g)
+        for (int c = 0; c < 4; ++c) EXPECT_EQ(back.grain_orientations[g][c], asset.grain_orientations[g][c]);
+    for (auto value = asset.grain_id->cbeginValueOn(); value; ++value)
+        ASSERT_EQ(back.grain_id->tree().getValue(value.getCoord()), *value);
+    const AssetCheck check = check_opal_asset(folder_ / "a.vdb");
+    EXPECT_TRUE(check.errors.empty()) << check.errors.front();
+}
+
+TEST_F(OpalAssetTest, PointsAreLast) {
+    write_opal_asset(two_grain_ball(), folder_ / "a.vdb");
+    const RawOpalFile raw = read_raw_opal_file(folder_ / "a.vdb");
+    ASSERT_EQ(raw.grids.size(), 3u);
+    EXPECT_EQ(raw.grids[0]->getName(), "grain_id");
+    EXPECT_EQ(raw.grids[1]->getName(), "shape");
+    EXPECT_EQ(raw.grids[2]->getName(), "sites");
+}
+
+TEST_F(OpalAssetTest, MissingForeignAndTruncatedFilesAreNamed) {
+    EXPECT_INPUT_ERROR(read("nothing.vdb"), "nothing.vdb: no such file");
+    std::ofstream(folder_ / "text.vdb") << "this is not a vdb file at all";
+    EXPECT_INPUT_ERROR(read(folder_ / "text.vdb"), "text.vdb: not a complete .vdb file");
+    std::ofstream(folder_ / "empty.vdb").close();
+    EXPECT_INPUT_ERROR(read(folder_ / "empty.vdb"), "not a complete .vdb file");
+
+    write_opal_asset(two_grain_ball(), folder_ / "a.vdb");
+    std::ostringstream bytes;
+    bytes << std::ifstream(folder_ / "a.vdb", std::ios::binary).rdbuf();
+    const std::string whole = bytes.str();
+    for (const double fraction : {0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98, 0.999}) {
+        std::ofstream(folder_ / "cut.vdb", std::ios::binary) << whole.substr(0, std::size_t(fraction * double(whole.size())));
+        EXPECT_INPUT_ERROR(read(folder_ / "cut.vdb"), "cut.vdb: not a complete .vdb file");
+    }
+}
+
+TEST_F(OpalAssetTest, WithoutGrainIdsTheGridsFoundAreNamed) {
+    write_foreign(folder_ / "fog.vdb", openvdb::FloatGrid::create(0.0f), "density");
+    EXPECT_INPUT_ERROR(read(folder_ / "fog.vdb"), "no grid named grain_id (found: density)");
+}
+
+TEST_F(OpalAssetTest, ForeignLabelsReadWithNotices) {
+    write_foreign(folder_ / "ids.vdb", two_grain_ball().grain_id, "grain_id");
+    const OpalAsset asset = read(folder_ / "ids.vdb");
+    EXPECT_EQ(asset.num_grains(), 2u);
+    EXPECT_EQ(notices_.size(), 3u);
+    EXPECT_TRUE(asset.shape);
+
+    auto floats = openvdb::FloatGrid::create(0.0f);
+    floats->tree().setValueOn({0, 0, 0}, 1.0f);
+    floats->tree().setValueOn({1, 0, 0}, 2.0f);
+    write_foreign(folder_ / "floats.vdb", floats, "grain_id");
+    EXPECT_EQ(read(folder_ / "floats.vdb").num_grains(), 2u);
+}
+
+TEST_F(OpalAssetTest, BrokenIdsAreNamedByVoxel) {
+    auto ids = openvdb::Int32Grid::create(0);
+    ids->tree().setValueOn({4, 5, 6}, -3);
+    write_foreign(folder_ / "negative.vdb", ids, "grain_id");
+    EXPECT_INPUT_ERROR(read(folder_ / "negative.vdb"), "grid grain_id: voxel [4, 5, 6] holds -3");
+    auto floats = openvdb::FloatGrid::create(0.0f);
+    floats->tree().setValueOn({1, 2, 3}, std::nanf(""));
+    write_foreign(folder_ / "nan.vdb", floats, "grain_id");
+    EXPECT_INPUT_ERROR(read(folder_ / "nan.vdb"), "voxel [1, 2, 3] holds nan");
+    write_foreign(folder_ / "none.vdb", openvdb::Int32Grid::create(0), "grain_id");
+    EXPECT_INPUT_ERROR(read(folder_ / "none.vdb"), "no voxel holds a grain");
+}
+
+TEST_F(OpalAssetTest, CheckReportsVoxelsOutsideTheShape) {
+    OpalAsset asset = two_grain_ball();
+    asset.grain_id->tree().setValueOn({35, 0, 0}, 1);
+    write_opal_asset(asset, folder_ / "outside.vdb");
+    const AssetCheck check = check_opal_asset(folder_ / "outside.vdb");
+    ASSERT_EQ(check.errors.size(), 1u);
+    EXPECT_NE(check.errors[0].find("1 voxels lie outside the shape"), std::string::npos);
+}
+
+TEST_F(OpalAssetTest, RandomOrientationsAreUniform) {
+    // Mean of the rotation matrix's trace is 0 for uniform rotations, variance of the trace 1 (Diaconis & Shahshahani: moments of SO(3)).
+    const int n = 20000;
+    double sum = 0.0, square_sum = 0.0;
+    for (int g = 1; g <= n; ++g) {
+        const auto q = random_orientation(1, false, std::uint64_t(g));
+        const double trace = 4.0 * double(q[3]) * double(q[3]) - 1.0;
+        sum += trace;
+        square_sum += trace * trace;
+    }
+    EXPECT_NEAR(sum / n, 0.0, 4.0 / std::sqrt(double(n)));
+    EXPECT_NEAR(square_sum / n, 1.0, 4.0 * 1.5 / std::sqrt(double(n)));
+}
+
+}  // namespace
+}  // namespace opal

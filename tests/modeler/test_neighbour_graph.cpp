@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "modeler/neighbour_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
+
+#include "modeler/labelling.h"
+#include "modeler/sites.h"
+#include "modeler/weights.h"
+#include "modeler_test_tools.h"
+
+namespace opal {
+namespace {
+
+using testing_tools::random_sites;
+
+std::unique_ptr<Shape> ellipsoid(std::array<double, 3> size_mm) {
+    ShapeRecipe recipe;
+    recipe.size_mm = size_mm;
+    return make_shape(recipe);
+}
+
+double spacing_of(const Shape& shape, std::size_t count) {
+    return std::cbrt(shape.bounds_mm().volume() * 0.5236 / static_cast<double>(count));
+}
+
+/// Random sites inside the shape.
+std::vector<Site> sites_inside(const Shape& shape, std::size_t count, double weight_spread_mm, std::uint64_t seed) {
+    std::vector<Site> sites = random_sites(shape.bounds_mm(), 3 * count, weight_spread_mm, seed);
+    std::erase_if(sites, [&](const Site& site) { return !shape.contains(site.position_mm); });
+    sites.resize(std::min(count, sites.size()));
+    return sites;
+}
+
+/// How many faces between voxels lie between each two sites' cells, in a fine labelling.
+std::map<NeighbourPair, int> voxel_faces(const std::vector<Site>& sites, const Shape& shape, double voxel_size_mm) {
+    std::vector<std::int32_t> labels(sites.size());
+    std::iota(labels.begin(), labels.end(), 1);
+    const auto grid = label_voxels(sites, labels, *shape.level_set(voxel_size_mm));
+    auto values = grid->getConstAccessor();
+    std::map<NeighbourPair, int> faces;
+    for (const openvdb::Coord& voxel : grid->evalActiveVoxelBoundingBox()) {
+        const std::int32_t here = values.getValue(voxel);
+        if (here == 0) continue;
+        for (const openvdb::Coord& step : {openvdb::Coord(1, 0, 0), openvdb::Coord(0, 1, 0), openvdb::Coord(0, 0, 1)}) {
+            const std::int32_t there = values.getValue(voxel + step);
+            if (there != 0 && there != here) ++faces[{std::min(here, there) - 1, std::max(here, there) - 1}];
+        }
+    }
+    return faces;
+}
+
+void expect_the_labelling_s_neighbours(const std::vector<Site>& sites, const Shape& shape) {
+    const double spacing = spacing_of(shape, sites.size());
+    const std::vector<char> hidden = find_hidden_sites(sites, spacing);
+    const NeighbourGraph graph = apollonius_graph(sites, hidden, shape, spacing);
+    ASSERT_TRUE(std::is_sorted(graph.begin(), graph.end()));
+    const std::map<NeighbourPair, int> faces = voxel_faces(sites, shape, spacing / 40.0);
+
+    // Voxels can bridge a thin cell between two others, but not often: only contacts of several faces must be in the graph.
+    std::size_t missed = 0, large_faces = 0;
+    for (const auto& [pair, count] : faces) {
+        ASSERT_EQ(hidden[std::size_t(pair.first)] + hidden[std::size_t(pair.second)], 0);
+        if (count < 12) continue;
+        ++large_faces;
+        if (!std::binary_search(graph.begin(), graph.end(), pair)) ++missed;
+    }
+    EXPECT_GT(large_faces, 0u);
+    EXPECT_EQ(missed, 0u) << "of " << large_faces;
+    // Proven pairs that the voxels do not show have faces thinner than a voxel.
+    const auto unseen =
+        std::count_if(graph.begin(), graph.end(), [&](const NeighbourPair& pair) { return !faces.contains(pair); });
+    EXPECT_LE(unseen, 1 + std::ssize(graph) / 40) << "of " << graph.size();
+}
+
+TEST(ApolloniusGraph, EqualsTheFacesOfAFineLabelling) {
+    const auto shape = ellipsoid({5.0, 4.0, 3.0});
+    for (const double spread : {0.0, 0.15, 0.6, 2.0}) {
+        SCOPED_TRACE(spread);
+        expect_the_labelling_s_neighbours(sites_inside(*shape, 40, spread, 8), *shape);
+    }
+}
+
+TEST(ApolloniusGraph, TwoSitesAndOneAndNone) {
+    const auto shape = ellipsoid({5.0, 4.0, 3.0});
+    const std::vector<Site> sites = sites_inside(*shape, 2, 0.1, 1);
+    EXPECT_EQ(apollonius_graph(sites, {0, 0}, *shape, 2.0), (NeighbourGraph{{0, 1}}));
+    EXPECT_TRUE(apollonius_graph(sites, {0, 1}, *shape, 2.0).empty());
+    EXPECT_TRUE(apollonius_graph({sites[0]}, {0}, *shape, 2.0).empty());
+}
+
+TEST(ApolloniusGraph, CellsThatTouchAtEdgesOnlyAreNoNeighbours) {
+    // The cells of a cubic lattice: 6 neighbours share a face; 12 share an edge and 8 a corner, which are no faces.
+    ShapeRecipe recipe;
+    recipe.kind = ShapeKind::box;
+    recipe.size_mm = {4.0, 4.0, 4.0};
+    std::vector<Site> sites;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            for (int k = 0; k < 4; ++k) sites.push_back({openvdb::Vec3d(i - 1.5, j - 1.5, k + 0.5), 0.25f, 0});
+    const NeighbourGraph graph = apollonius_graph(sites, std::vector<char>(64, 0), *make_shape(recipe), 1.0);
+    EXPECT_EQ(graph.size(), 3u * 3u * 16u);
+    for (const NeighbourPair& pair : graph)
+        EXPECT_DOUBLE_EQ((sites[std::size_t(pair.first)].position_mm - sites[std::size_t(pair.second)].position_mm).length(),
+                         1.0);
+}
+
+TEST(ApolloniusGraph, WithoutWeightsIsDelaunaysInTheInterior) {
+    const auto shape = ellipsoid({6.0, 6.0, 6.0});
+    const SiteSet set = sample_sites(*shape, 2000, 5);
+    GrainsRecipe recipe;
+    recipe.weight.kind = WeightKind::none;
+    const std::vector<Site> sites = weigh_sites(set, recipe);
+    const std::vector<char> hidden(sites.size(), 0);
+    const NeighbourGraph apollonius = apollonius_graph(sites, hidden, *shape, set.spacing_mm());
+    const NeighbourGraph delaunay = delaunay_graph(sites, hidden);
+    EXPECT_TRUE(std::includes(delaunay.begin(), delaunay.end(), apollonius.begin(), apollonius.end()));
+
+    std::size_t interior = 0, missed = 0;
+    for (const NeighbourPair& pair : delaunay) {
+        const auto deep = [&](std::int32_t site) {
+            return shape->signed_distance_mm(sites[std::size_t(site)].position_mm) < -1.5 * set.spacing_mm();
+        };
+        if (!deep(pair.first) || !deep(pair.second)) continue;
+        ++interior;
+        missed += std::binary_search(apollonius.begin(), apollonius.end(), pair) ? 0 : 1;
+    }
+    EXPECT_GT(interior, 3000u);
+    EXPECT_LE(double(missed), 0.002 * double(interior)) << missed << " of " << interior;
+}
+
+TEST(ApolloniusGraph, DoesNotDependOnThreads) {
+    const auto shape = ellipsoid({6.0, 5.0, 4.0});
+    const std::vector<Site> sites = sites_inside(*shape, 500, 0.1, 2);
+    const double spacing = spacing_of(*shape, sites.size());
+    const std::vector<char> hidden = find_hidden_sites(sites, spacing);
+    const auto build = [&] { return apollonius_graph(sites, hidden, *shape, spacing); };
+    EXPECT_EQ(testing_tools::with_threads(1, build), testing_tools::with_threads(2, build));
+}
+
+TEST(DelaunayGraph, OfFewSites) {
+    std::vector<Site> sites(5);
+    sites[1].position_mm = {1.0, 0.0, 0.0};
+    sites[2].position_mm = {0.0, 1.0, 0.0};
+    sites[3].position_mm = {0.0, 0.0, 1.0};
+    sites[4].position_mm = {0.1, 0.1, 0.1};
+    EXPECT_EQ(delaunay_graph(sites, {0, 0, 0, 0, 0}).size(), 10u);  // a point inside a tetrahedron: all pairs
+    EXPECT_EQ(delaunay_graph(sites, {0, 0, 0, 0, 1}).size(), 6u);
+    EXPECT_EQ(delaunay_graph(sites, {0, 0, 1, 1, 1}), (NeighbourGraph{{0, 1}}));
+    EXPECT_TRUE(delaunay_graph(sites, {0, 1, 1, 1, 1}).empty());
+}
+
+}  // namespace
+}  // namespace opal

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
+#include "modeler/point_grid.h"
+#include "modeler/sample_elimination.h"
+#include "modeler/sites.h"
+#include "modeler_test_tools.h"
+
+namespace opal {
+namespace {
+
+using testing_tools::random_point;
+
+std::unique_ptr<Shape> cabochon() {
+    ShapeRecipe recipe;
+    recipe.kind = ShapeKind::cabochon;
+    recipe.girdle_mm = 0.6;
+    return make_shape(recipe);
+}
+
+/// A speck in a huge box.
+class SpeckShape final : public Shape {
+  public:
+    double signed_distance_mm(const openvdb::Vec3d& p) const override { return p.length() - 1.0e-3; }
+    openvdb::BBoxd bounds_mm() const override { return {openvdb::Vec3d(-1.0), openvdb::Vec3d(1.0)}; }
+};
+
+class SiteCount : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(SiteCount, IsExactAndInside) {
+    const auto shape = cabochon();
+    const SiteSet sites = sample_sites(*shape, GetParam(), 3);
+    ASSERT_EQ(sites.positions_mm.size(), GetParam());
+    for (const openvdb::Vec3d& p : sites.positions_mm) ASSERT_LT(shape->signed_distance_mm(p), 0.0) << p;
+}
+
+INSTANTIATE_TEST_SUITE_P(Sites, SiteCount, ::testing::Values(1, 2, 7, 1000, 27000));
+
+TEST(Sites, FormAPoissonDisk) {
+    const SiteSet sites = sample_sites(*cabochon(), 1000, 1);
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < sites.positions_mm.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b)
+            shortest = std::min(shortest, (sites.positions_mm[a] - sites.positions_mm[b]).length());
+    EXPECT_DOUBLE_EQ(sites.shortest_distance_mm, shortest);
+    EXPECT_GT(sites.relative_radius, 0.6);  // uniform points have about 0.05
+    EXPECT_LT(sites.relative_radius, 1.0);
+}
+
+TEST(Sites, VolumeIsEstimatedFromTheSampling) {
+    ShapeRecipe recipe;
+    recipe.kind = ShapeKind::sphere;
+    recipe.size_mm = {10.0, 10.0, 10.0};
+    // 10,000 hits of 19,100 tries: relative standard deviation sqrt((1 - 0.524) / 10,000) = 0.7 %.
+    EXPECT_NEAR(sample_sites(*make_shape(recipe), 7, 1).shape_volume_mm3, 523.6, 0.03 * 523.6);
+}
+
+TEST(Sites, AreAFunctionOfTheSeedAlone) {
+    const auto shape = cabochon();
+    const auto one = testing_tools::with_threads(1, [&] { return sample_sites(*shape, 500, 9); });
+    const auto two = testing_tools::with_threads(2, [&] { return sample_sites(*shape, 500, 9); });
+    EXPECT_EQ(one.positions_mm, two.positions_mm);
+    EXPECT_NE(one.positions_mm, sample_sites(*shape, 500, 10).positions_mm);
+}
+
+TEST(Sites, SingleSiteHasNoShortestDistance) {
+    const SiteSet sites = sample_sites(*cabochon(), 1, 1);
+    EXPECT_EQ(sites.shortest_distance_mm, 0.0);
+    EXPECT_EQ(sites.relative_radius, 0.0);
+}
+
+TEST(Sites, ShapeThatFillsTooLittleIsRefused) {
+    const auto message = testing_tools::input_error_of([] { sample_sites(SpeckShape(), 10, 1); });
+    EXPECT_NE(message.find("fills too little of its bounds"), std::string::npos) << message;
+}
+
+TEST(PointGrid, FindsExactlyThePointsWithinARadius) {
+    const openvdb::BBoxd box({-3.0, 2.0, 0.0}, {5.0, 2.5, 40.0});
+    std::vector<openvdb::Vec3d> points;
+    for (std::size_t n = 0; n < 800; ++n) points.push_back(random_point(box, 5, n));
+    const PointGrid grid(points, 0.7);
+    for (const double radius : {0.3, 0.7, 2.0, 100.0})
+        for (std::size_t query = 0; query < 50; ++query) {
+            const openvdb::Vec3d centre = random_point({{-5.0, 0.0, -5.0}, {7.0, 4.0, 45.0}}, 6, query);
+            std::vector<char> found(points.size(), 0);
+            grid.for_each_within(centre, radius, [&](std::size_t index, double) { ++found[index]; });
+            for (std::size_t n = 0; n < points.size(); ++n)
+                ASSERT_EQ(found[n], (points[n] - centre).lengthSqr() <= radius * radius ? 1 : 0);
+        }
+}
+
+TEST(SampleElimination, TakesTheMostCrowdedAndTheLowestIndexOfEquals) {
+    // A pair at distance 1 and a single point: one of the pair goes, both are equally crowded.
+    const std::vector<openvdb::Vec3d> samples = {{0, 0, 0}, {1, 0, 0}, {9, 0, 0}};
+    EXPECT_EQ(eliminate_samples(samples, 2, 1.0), (std::vector<std::size_t>{1, 2}));
+    EXPECT_EQ(eliminate_samples(samples, 3, 1.0), (std::vector<std::size_t>{0, 1, 2}));
+}
+
+}  // namespace
+}  // namespace opal

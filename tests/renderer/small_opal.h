@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/opal_asset.h"
+#include "renderer/cpu/render_cpu.h"
+
+namespace opal {
+
+/// An opal made in the test itself, without the modeler: a ball (or a slab) of voxels labelled by the nearest of `grains` random points.
+struct SmallOpal {
+    double radius_mm = 3.0;
+    double half_thickness_mm = 0.0;  ///< above 0: a square slab of that half thickness and half width `radius_mm` instead of a ball
+    double voxel_mm = 0.1;
+    int grains = 40;
+    OpalConstants constants;
+
+    SmallOpal();
+    OpalAsset make() const;
+};
+
+/// A folder that is removed at the end.
+class ScratchFolder {
+  public:
+    ScratchFolder();
+    ~ScratchFolder();
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+struct Rendered {
+    Image image;
+    RenderOutcome outcome;
+};
+
+/// Renders a scene given as TOML (file names relative to `folder`'s files through absolute paths).
+Rendered render_text(const std::string& scene_toml, int samples);
+
+/// Mean and standard error over the pixels [x0, x1) x [y0, y1) of a channel, from the stored variances.
+struct MeanEstimate {
+    double mean, standard_error;
+};
+MeanEstimate region_mean(const Image& image, const std::string& channel, int x0, int y0, int x1, int y1);
+
+}  // namespace opal

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "renderer/host/spectrum_tables.h"
+#include "small_opal.h"
+
+namespace opal {
+namespace {
+
+/// An opal without absorption under uniform light of radiance 1 must be invisible: every sample's expected value is 1 at every wavelength,
+/// whatever reflects, refracts, diffracts or scatters, up to what the bounce limit cuts off, which the render reports.
+void expect_invisible(const SmallOpal& small, const std::string& settings, int samples) {
+    const ScratchFolder folder;
+    write_opal_asset(small.make(), folder / "opal.vdb");
+    const Rendered rendered = render_text(
+        "[render]\nwidth = 48\nheight = 48\nsampler = \"independent\"\nfilter = \"box\"\n[camera]\nposition_mm = [0, -20, 5]\n"
+        "target_mm = [0, 0, 0]\nvertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
+            (folder / "opal.vdb").string() + "'\n" + settings,
+        samples);
+    const RenderOutcome& outcome = rendered.outcome;
+    EXPECT_EQ(outcome.counters.not_a_number, 0u);
+    EXPECT_LE(outcome.counters.lost_paths, outcome.totals.samples / 100000);
+
+    const double n = double(outcome.totals.samples);
+    const char* channels[3] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const char* channel = channels[c];
+        const MeanEstimate estimate = region_mean(rendered.image, channel, 0, 0, 48, 48);
+        EXPECT_NEAR(estimate.mean + outcome.totals.truncated_rgb[c] / n, 1.0, 4.0 * estimate.standard_error) << channel;
+        EXPECT_LT(estimate.standard_error, 0.01) << "too noisy to say anything";
+    }
+    const SpectrumTablesData tables = make_spectrum_tables();
+    for (int bin = 0; bin < num_bins; ++bin) {
+        double white = 0.0;
+        int count = 0;
+        for (double w = std::max(360.0, bin_centre_nm(bin) - 5.0); w <= std::min(830.0, bin_centre_nm(bin) + 5.0); w += 0.1, ++count)
+            white += double(table_at(tables.view().white, float(w)));
+        white /= count;
+        const double mean = outcome.totals.radiance[std::size_t(bin)] / n;
+        const double error = std::sqrt((outcome.totals.radiance_squared[std::size_t(bin)] / n - mean * mean) / n);
+        EXPECT_NEAR(mean / white + outcome.totals.truncated[std::size_t(bin)] / n, 1.0, 4.0 * error / white) << bin_centre_nm(bin) << " nm";
+    }
+}
+
+TEST(Furnace, ClearGem) {
+    SmallOpal small;
+    expect_invisible(small, "[opal]\ndiffraction = \"none\"\n", 640);
+}
+
+TEST(Furnace, Diffraction) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 300.0;
+    expect_invisible(small, "", 128);
+}
+
+TEST(Furnace, StrongDiffractionInAir) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 320.0;
+    small.constants.n_medium = 1.0;
+    expect_invisible(small, "", 128);
+}
+
+TEST(Furnace, DiffractionAndScattering) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 280.0;
+    small.constants.sigma_s_rayleigh_400nm_per_mm = 0.3;
+    small.constants.sigma_s_mie_per_mm = 0.4;
+    expect_invisible(small, "", 128);
+    expect_invisible(small, "[opal]\ncompanions = 0\n", 256);
+}
+
+/// Few bounces: what is cut off is large, and must be reported to the same accuracy.
+TEST(Furnace, TruncationIsReported) {
+    SmallOpal small;
+    small.constants.sigma_s_mie_per_mm = 1.0;
+    const ScratchFolder folder;
+    write_opal_asset(small.make(), folder / "opal.vdb");
+    const Rendered rendered = render_text(
+        "[render]\nwidth = 48\nheight = 48\nmax_bounces = 4\nsampler = \"independent\"\n[camera]\nposition_mm = [0, -20, 5]\n"
+        "target_mm = [0, 0, 0]\nvertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
+            (folder / "opal.vdb").string() + "'\n",
+        64);
+    const MeanEstimate green = region_mean(rendered.image, "G", 0, 0, 48, 48);
+    const double truncated = rendered.outcome.totals.truncated_rgb[1] / double(rendered.outcome.totals.samples);
+    EXPECT_GT(truncated, 0.05);
+    EXPECT_GT(rendered.outcome.counters.truncated_paths, 0u);
+    // Both halves of the sum are noisy here: the truncated share is a yes-or-no per path.
+    const double truncated_error = std::sqrt(truncated * (1.0 - truncated) / double(rendered.outcome.totals.samples));
+    EXPECT_NEAR(green.mean + truncated, 1.0, 4.0 * (green.standard_error + truncated_error));
+}
+
+/// A perfectly white diffuse floor under the opal: light that passes through the gem and comes back is still all there.
+TEST(Furnace, WithAWhiteFloor) {
+    SmallOpal small;
+    expect_invisible(small,
+                     "[[material]]\nname = \"white\"\nalbedo = 1.0\n[[object]]\nkind = \"plane\"\nmaterial = \"white\"\ntranslate_mm = [0, 0, -3.1]\n",
+                     128);
+}
+
+}  // namespace
+}  // namespace opal
