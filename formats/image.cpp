@@ -46,6 +46,8 @@ void write_exr(const std::filesystem::path& path, const Image& image) {
     OIIO::ImageSpec spec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::FLOAT);
     spec.channelnames = image.channel_names;
     spec.attribute("compression", "zip");
+    // Left out, OpenImageIO fills in the time of writing; the same input must give the same bytes.
+    spec.attribute("DateTime", "");
     for (const auto& [key, value] : image.attributes) spec.attribute(key, value);
     write_image(path, spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
 }

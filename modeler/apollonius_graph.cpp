@@ -19,7 +19,7 @@ namespace {
 constexpr double task_size = 4.0;
 /// Above this size (in spacings) blocks have too many candidates for pairs to be worth a test.
 constexpr double largest_tested_size = 0.5;
-constexpr int max_search_steps = 8;
+constexpr int max_search_steps = 12;
 /// How far (in block sizes) the search steps beyond the place where a rival is as near.
 constexpr double lead_margin = 0.02;
 

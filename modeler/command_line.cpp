@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "formats/atomic_file.h"
@@ -13,6 +14,7 @@
 #include "formats/opal_asset.h"
 #include "formats/recipe.h"
 #include "formats/report.h"
+#include "formats/text.h"
 #include "modeler/build.h"
 #include "modeler/info.h"
 
@@ -40,6 +42,8 @@ Examples:
   opal-model build recipe.toml -o opal.vdb --set grains.num_sites=2000 --set shape.size_mm=[14.0,10.0,5.0] --report report.json
   opal-model info opal.vdb
   opal-model check opal.vdb)";
+
+const std::vector<std::string> command_names = {"build", "info", "check"};
 
 void say(const std::string& message) {
     fmt::print(stderr, "opal-model: {}\n", message);
@@ -94,6 +98,22 @@ int run_check(const FileArguments& arguments) {
     return 0;
 }
 
+std::string version_line() {
+    return "opal-model " + version_report()["opal"].get<std::string>();
+}
+
+void finish_command(CLI::App& command) {
+    command.set_version_flag("--version", version_line());
+    command.footer(help_footer);
+}
+
+void require_known_command(int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    if (std::find(command_names.begin(), command_names.end(), argv[1]) != command_names.end()) return;
+    throw InputError(
+        fmt::format("unknown command '{}'{} (commands: {})", argv[1], did_you_mean(argv[1], command_names), join(command_names)));
+}
+
 void add_build(CLI::App& app, BuildArguments& arguments) {
     CLI::App* const build = app.add_subcommand("build", "Build an opal .vdb from a recipe");
     build->add_option("RECIPE", arguments.recipe_file, "recipe file (TOML)")->required();
@@ -106,14 +126,14 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
         ->type_name("N");
     build->add_option("--report", arguments.report_file, "write times, counts, versions and the resolved recipe as JSON")
         ->type_name("FILE.json");
-    build->footer(help_footer);
+    finish_command(*build);
 }
 
 void add_file_command(CLI::App& app, const std::string& name, const std::string& what, FileArguments& arguments, bool with_json) {
     CLI::App* const command = app.add_subcommand(name, what);
     command->add_option("FILE", arguments.file, "opal .vdb")->required();
     if (with_json) command->add_flag("--json", arguments.json, "print JSON instead");
-    command->footer(help_footer);
+    finish_command(*command);
 }
 
 }  // namespace
@@ -121,13 +141,13 @@ void add_file_command(CLI::App& app, const std::string& name, const std::string&
 int run_opal_model(int argc, char** argv) {
     CLI::App app("Models opal: a recipe becomes a .vdb of grains for opal-render, Blender and Houdini.", "opal-model");
     app.require_subcommand(1);
-    app.set_version_flag("--version", "opal-model " + version_report()["opal"].get<std::string>());
-    app.footer(help_footer);
+    finish_command(app);
     BuildArguments build;
     FileArguments info, check;
     add_build(app, build);
     add_file_command(app, "info", "Say what an opal .vdb holds (sizes in mm)", info, true);
     add_file_command(app, "check", "Check an opal .vdb against the schema; exit code 2 where it is unusable", check, false);
+    require_known_command(argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {

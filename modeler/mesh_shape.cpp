@@ -7,7 +7,6 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "formats/command.h"
 #include "modeler/level_set.h"
@@ -20,6 +19,9 @@ namespace {
 
 /// Voxels by which the band is made wider at first, so that no voxel of the band itself is missed.
 constexpr float spare_width = 1.0f;
+/// Nearer to the surface than this (in voxels), a sign found in floats is not relied on: 2^20 voxels from the origin, where grids
+/// end, a float is good to 1/16.
+constexpr double uncertain_sign = 0.1;
 
 class MeshShape final : public Shape {
   public:
@@ -32,30 +34,36 @@ class MeshShape final : public Shape {
     openvdb::BBoxd bounds_mm() const override { return bounds_mm_; }
 
     openvdb::FloatGrid::Ptr level_set(double voxel_size_mm) const override {
-        std::vector<openvdb::Vec3d> vertices_in_voxels;
-        for (const openvdb::Vec3d& vertex_mm : solid_.vertices_mm) vertices_in_voxels.push_back(vertex_mm / voxel_size_mm);
-        const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3d, openvdb::Vec3I> adapter(vertices_in_voxels,
+        std::vector<openvdb::Vec3s> vertices_in_voxels;
+        for (const openvdb::Vec3d& vertex_mm : solid_.vertices_mm) vertices_in_voxels.emplace_back(vertex_mm / voxel_size_mm);
+        const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(vertices_in_voxels,
                                                                                                  solid_.triangles);
         const auto transform = openvdb::math::Transform::createLinearTransform(voxel_size_mm);
         const auto width = static_cast<float>(level_set_half_width) + spare_width;
-        const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(adapter, *transform, width, width);
+        // This very signature is compiled into OpenVDB's library; any other takes minutes to compile under sanitizers.
+        openvdb::util::NullInterrupter interrupter;
+        const auto grid =
+            openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, adapter, *transform, width, width, 0, nullptr);
         make_exact(grid->tree(), voxel_size_mm);
         label_as_shape(*grid, voxel_size_mm);
         return grid;
     }
 
   private:
-    /// OpenVDB finds the band and its signs quickly, but grows it by passing on the nearest triangle of a neighbour, which may be
-    /// the second nearest: off by up to a tenth of a voxel near edges. Distances are computed anew, and what the spare width
-    /// holds beyond the band is dropped.
+    /// OpenVDB finds the band and its signs quickly, but works in floats and grows the band by passing on the nearest triangle of
+    /// a neighbour, which may be the second nearest: off by up to a tenth of a voxel near edges. Distances, and signs next to the
+    /// surface, are computed anew, and what the spare width holds beyond the band is dropped.
     void make_exact(openvdb::FloatTree& tree, double voxel_size_mm) const {
         const double band_mm = level_set_half_width * voxel_size_mm;
         openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
         leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
             if (interrupt_requested()) return;
             for (auto value = leaf.beginValueOn(); value; ++value) {
-                const double distance_mm = distance_.distance_mm(value.getCoord().asVec3d() * voxel_size_mm);
-                value.setValue(static_cast<float>(std::copysign(std::min(distance_mm, band_mm), static_cast<double>(*value))));
+                const openvdb::Vec3d point_mm = value.getCoord().asVec3d() * voxel_size_mm;
+                const double distance_mm = distance_.distance_mm(point_mm);
+                const bool inside = distance_mm < uncertain_sign * voxel_size_mm ? distance_.contains(point_mm) : *value < 0.0f;
+                const double stored_mm = std::min(distance_mm, band_mm);
+                value.setValue(static_cast<float>(inside ? -stored_mm : stored_mm));
                 if (distance_mm >= band_mm) value.setValueOff();
             }
         });

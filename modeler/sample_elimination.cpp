@@ -12,12 +12,26 @@
 namespace opal {
 namespace {
 
-double crowding(double squared_distance, double reach) {
-    const double nearness = std::max(0.0, 1.0 - std::sqrt(squared_distance) / reach);
-    const double power2 = nearness * nearness;
-    const double power4 = power2 * power2;
-    return power4 * power4;
-}
+/// What neighbours at a distance add to each other's crowding.
+class Crowding {
+  public:
+    Crowding(std::size_t samples, std::size_t target, double reach) : reach_(reach) {
+        const double kept = static_cast<double>(target) / static_cast<double>(std::max<std::size_t>(1, samples));
+        nearest_ = 0.65 * (1.0 - std::pow(kept, 1.5));
+    }
+
+    double operator()(double squared_distance) const {
+        const double distance = std::max(nearest_, std::sqrt(squared_distance) / reach_);
+        const double nearness = std::max(0.0, 1.0 - distance);
+        const double power2 = nearness * nearness;
+        const double power4 = power2 * power2;
+        return power4 * power4;
+    }
+
+  private:
+    double reach_;
+    double nearest_;  ///< in units of the reach
+};
 
 struct HeapEntry {
     double weight;
@@ -37,11 +51,12 @@ double packing_radius(double volume, std::size_t count) {
 
 std::vector<std::size_t> eliminate_samples(const std::vector<openvdb::Vec3d>& samples, std::size_t target, double r_max) {
     const double reach = 2.0 * r_max;
+    const Crowding crowding(samples.size(), target, reach);
     const PointGrid grid(samples, reach);
     std::vector<double> weight(samples.size(), 0.0);
     tbb::parallel_for(std::size_t(0), samples.size(), [&](std::size_t n) {
         grid.for_each_within(samples[n], reach, [&](std::size_t other, double squared_distance) {
-            if (other != n) weight[n] += crowding(squared_distance, reach);
+            if (other != n) weight[n] += crowding(squared_distance);
         });
     });
 
@@ -62,7 +77,7 @@ std::vector<std::size_t> eliminate_samples(const std::vector<openvdb::Vec3d>& sa
         heap.pop_back();
         alive[sample] = false;
         grid.for_each_within(samples[sample], reach, [&](std::size_t other, double squared_distance) {
-            if (alive[other]) weight[other] -= crowding(squared_distance, reach);
+            if (alive[other]) weight[other] -= crowding(squared_distance);
         });
         if (--left % 4096 == 0) throw_if_interrupted();
     }

@@ -42,43 +42,56 @@ class PathTracer {
         if (scene.opal.present) medium_ = lane_medium(scene.opal, wavelengths);
     }
 
-    /// Traces one path from the camera.
-    OPAL_HD PathResult trace(Ray ray) {
-        for (int bounce = 0;; ++bounce) {
+    /// Traces one path from the camera. Where it first meets the opal from outside it goes on both ways, each weighted by its Fresnel
+    /// factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the noise.
+    OPAL_HD PathResult trace(const Ray& camera) {
+        follow(camera, 0);
+        if (reflection_pending_) {
+            weights_ = reflection_weights_;
+            inside_ = false;
+            specular_ = true;
+            follow(reflection_, 1);
+        }
+        return result_;
+    }
+
+  private:
+    OPAL_HD void follow(Ray ray, int bounce) {
+        for (;; ++bounce) {
             RayHit hit;
             const bool found = intersector_.closest(ray, hit);
             if (bounce == scene_.max_bounces && (found || inside_)) {
-                result_.truncated = weights_.contribution();
+                const Lanes lost = weights_.contribution();
+                for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
                 ++counters_.truncated_paths;
-                break;
+                return;
             }
             if (inside_) {
                 if (!found) {
                     ++counters_.lost_paths;
-                    break;
+                    return;
                 }
                 const InteriorEvent event = cross_interior(scene_.opal, wavelengths_, medium_, ray, hit.distance_mm, interior_,
                                                            weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
                     specular_ = true;
-                    if (!survives_roulette(bounce)) break;
+                    if (!survives_roulette(bounce)) return;
                     continue;
                 }
             }
             if (!found) {
                 add_environment(ray.direction);
-                break;
+                return;
             }
             const Surface surface = surface_at(scene_, hit);
-            ray = surface.material < 0 ? meet_opal(ray, surface) : meet_diffuse(ray, surface);
-            if (!survives_roulette(bounce)) break;
+            ray = surface.material < 0 ? meet_opal(ray, surface, bounce) : meet_diffuse(ray, surface);
+            if (!survives_roulette(bounce)) return;
         }
-        return result_;
     }
 
-  private:
-    OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface) {
+    OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface, int bounce) {
+        if (bounce == 0 && !inside_) return split_at_opal(ray, surface);
         const Vec3 direction = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, random_.next());
         const bool goes_inside = dot(direction, surface.geometric_normal) < 0.0f;
         if (goes_inside != inside_) interior_.grain = 0;
@@ -86,6 +99,22 @@ class PathTracer {
         interior_.tested_pairs = 0;
         specular_ = true;
         return {offset_origin(surface.position, surface.geometric_normal, direction), direction};
+    }
+
+    /// Keeps the reflected half for later and returns the refracted one.
+    OPAL_HD Ray split_at_opal(const Ray& ray, const Surface& surface) {
+        const float reflectance = dielectric_reflectance(ray.direction, surface, scene_.opal.n_eff);
+        const Vec3 reflected = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, 0.0f);
+        const Vec3 refracted = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, 1.0f);
+        reflection_ = {offset_origin(surface.position, surface.geometric_normal, reflected), reflected};
+        reflection_weights_ = weights_;
+        for (int i = 0; i < weights_.count; ++i) {
+            reflection_weights_.throughput.v[i] *= reflectance;
+            weights_.throughput.v[i] *= 1.0f - reflectance;
+        }
+        reflection_pending_ = true;
+        inside_ = dot(refracted, surface.geometric_normal) < 0.0f;
+        return {offset_origin(surface.position, surface.geometric_normal, refracted), refracted};
     }
 
     OPAL_HD Ray meet_diffuse(const Ray& ray, const Surface& surface) {
@@ -149,6 +178,9 @@ class PathTracer {
     LaneWeights weights_;
     InteriorState interior_;
     PathResult result_;
+    Ray reflection_;
+    LaneWeights reflection_weights_;
+    bool reflection_pending_ = false;
     bool inside_ = false;
     bool specular_ = true;
     float pdf_ = 0.0f;

@@ -28,6 +28,14 @@ OPAL_HD inline Vec3 scatter_dielectric(Vec3 direction, const Surface& surface, f
     return normalize(mirror(direction, face));
 }
 
+/// Fresnel reflectance that scatter_dielectric uses for a ray that meets the surface from outside.
+OPAL_HD inline float dielectric_reflectance(Vec3 direction, const Surface& surface, float n_eff) {
+    const float cos_shading = -dot(direction, surface.shading_normal);
+    const float cos_incident = min_of(1.0f, cos_shading > 0.0f ? cos_shading : -dot(direction, surface.geometric_normal));
+    float cos_transmitted;
+    return fresnel_dielectric(cos_incident, n_eff, cos_transmitted);
+}
+
 /// Cosine-distributed direction around a normal; density cos / pi.
 OPAL_HD inline Vec3 sample_cosine(Vec3 normal, float u1, float u2) {
     const float radius = sqrtf(u1), angle_rad = 2.0f * pi_f * u2;

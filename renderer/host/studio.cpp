@@ -15,10 +15,10 @@ struct SoftBox {
 };
 
 constexpr SoftBox soft_boxes[] = {
-    {152.0, 48.0, 20.0, 15.0, 0.12, {15.0f, 14.6f, 14.0f}},
-    {-12.0, 30.0, 6.0, 24.0, 0.15, {9.0f, 9.2f, 9.6f}},
-    {-88.0, 66.0, 16.0, 9.0, 0.2, {7.0f, 7.0f, 7.0f}},
-    {75.0, 34.0, 26.0, 6.0, 0.2, {6.0f, 6.0f, 6.2f}},
+    {150.0, 46.0, 19.0, 14.0, 0.12, {9.0f, 8.8f, 8.4f}},
+    {-14.0, 28.0, 5.0, 22.0, 0.15, {5.5f, 5.6f, 5.9f}},
+    {-80.0, 68.0, 13.0, 8.0, 0.2, {3.5f, 3.5f, 3.5f}},
+    {70.0, 30.0, 24.0, 5.0, 0.2, {3.5f, 3.5f, 3.6f}},
 };
 
 float fade(double offset, double half_size, double edge) {
@@ -44,7 +44,7 @@ float coverage(const SoftBox& box, Vec3 direction) {
 
 Rgb studio_radiance(Vec3 direction) {
     // A dim room, a little brighter towards the ceiling.
-    const float surround = 0.10f + 0.10f * max_of(0.0f, direction.z);
+    const float surround = 0.04f + 0.05f * max_of(0.0f, direction.z);
     Rgb sum{surround, surround, surround * 1.04f};
     for (const SoftBox& box : soft_boxes) {
         const float covered = coverage(box, direction);

@@ -63,6 +63,37 @@ std::string ply_cuboid(const openvdb::Vec3d& low, const openvdb::Vec3d& high) {
     return text.str();
 }
 
+std::string base64(const std::string& bytes) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t n = 0; n < bytes.size(); n += 3) {
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k) bits = (bits << 8) | (n + k < bytes.size() ? std::uint8_t(bytes[n + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += n + k <= bytes.size() ? digits[(bits >> (18 - 6 * k)) & 63u] : '=';
+    }
+    return text;
+}
+
+/// The cuboid in a node that moves it by `shift`.
+std::string gltf_cuboid(const openvdb::Vec3d& from, const openvdb::Vec3d& to, const openvdb::Vec3d& shift) {
+    std::string bytes;
+    const auto append = [&bytes](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+    for (const openvdb::Vec3d& v : cuboid_vertices(from, to))
+        for (int axis = 0; axis < 3; ++axis) append(float(v[axis]));
+    for (const auto& face : cuboid_faces)
+        for (const int corner : face) append(std::uint16_t(corner - 1));
+    std::ostringstream text;
+    text << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[)" << shift.x()
+         << ',' << shift.y() << ',' << shift.z()
+         << R"(]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+         << R"("accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[)" << from.x() << ',' << from.y()
+         << ',' << from.z() << R"(],"max":[)" << to.x() << ',' << to.y() << ',' << to.z()
+         << R"(]},{"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}],)"
+         << R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":96},{"buffer":0,"byteOffset":96,"byteLength":72}],)"
+         << R"("buffers":[{"byteLength":168,"uri":"data:application/octet-stream;base64,)" << base64(bytes) << R"("}]})";
+    return text.str();
+}
+
 /// The same cuboid as `low`..`high`, seen as a box on the ground.
 double cuboid_distance(const openvdb::Vec3d& p, const openvdb::Vec3d& low, const openvdb::Vec3d& high) {
     ShapeRecipe box;
@@ -91,6 +122,12 @@ TEST(MeshShape, ReadsObjPlyAndStl) {
     expect_cuboid(*make_mesh_shape(write_test_file("cuboid.obj", obj_cuboid(low, high)), 1.0), low, high);
     expect_cuboid(*make_mesh_shape(write_test_file("cuboid.ply", ply_cuboid(low, high)), 1.0), low, high);
     expect_cuboid(*make_mesh_shape(write_test_file("cuboid.stl", stl_cuboid(low, high, false)), 1.0), low, high);
+}
+
+TEST(MeshShape, ReadsGltfWithItsNodesTransforms) {
+    const openvdb::Vec3d shift(1.0, -2.0, 0.5);
+    expect_cuboid(*make_mesh_shape(write_test_file("cuboid.gltf", gltf_cuboid(low - shift, high - shift, shift)), 1.0), low,
+                  high);
 }
 
 TEST(MeshShape, TurnsAnInsideOutMeshAround) {
