@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "formats/toml_reader.h"
 
@@ -42,7 +43,7 @@ ShapeRecipe read_shape(TomlSection section) {
         }
         if (shape.kind == ShapeKind::cabochon) {
             const double smallest = std::min({shape.size_mm[0], shape.size_mm[1], shape.size_mm[2]});
-            shape.girdle_mm = section.number("girdle_mm", 0.15 * smallest, NumberRange{0.0, 0.9 * smallest, true});
+            shape.girdle_mm = section.number("girdle_mm", std::round(0.15e6 * smallest) * 1.0e-6, NumberRange{0.0, 0.9 * smallest, true});
         }
     }
     section.finish();
@@ -53,7 +54,7 @@ WeightRecipe read_weight(TomlSection section) {
     WeightRecipe weight;
     weight.kind = enum_from<WeightKind>(weight_names, section.choice("kind", "perlin", weight_names));
     weight.amplitude = section.number("amplitude", weight.amplitude, NumberRange::from_zero(100.0));
-    weight.scale_mm = section.number("scale_mm", weight.scale_mm, NumberRange::positive(1.0e7));
+    weight.scale_mm = section.number("scale_mm", weight.scale_mm, NumberRange::between(1.0e-6, 1.0e7));
     weight.octaves = static_cast<int>(section.integer("octaves", weight.octaves, 1, 16));
     section.finish();
     return weight;

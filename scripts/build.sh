@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Configures and builds a preset: scripts/build.sh programs|all [PRESET]. "programs" leaves the tests out.
+# Configures and builds a preset: scripts/build.sh programs|unit|all [PRESET]. "programs" leaves the tests out, "unit" is the unit
+# tests alone (what the sanitizers run).
 set -eu
 cd "$(dirname "$0")/.."
 targets=${1:-all}
@@ -9,6 +10,7 @@ preset=${2:-release}
 [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >/dev/null
 case $targets in
     programs) cmake --build "build/$preset" --target opal-model opal-render ;;
+    unit) cmake --build "build/$preset" --target opal_formats_tests opal_modeler_tests opal_renderer_tests ;;
     all) cmake --build "build/$preset" ;;
-    *) echo "usage: scripts/build.sh programs|all [PRESET]" >&2; exit 2 ;;
+    *) echo "usage: scripts/build.sh programs|unit|all [PRESET]" >&2; exit 2 ;;
 esac

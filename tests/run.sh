@@ -7,5 +7,5 @@ cd "$(dirname "$0")/.."
 preset=${OPAL_PRESET:-release}
 
 sh scripts/install_dependencies.sh
-sh scripts/build.sh all "$preset"
+if [ "$preset" = release ]; then sh scripts/build.sh all; else sh scripts/build.sh unit "$preset"; fi
 ctest --preset "$preset" --parallel "$(nproc)" "$@"

@@ -139,8 +139,9 @@ TEST_F(PreciousOpal, BodyIsDarkAndTheStandIsLit) {
     EXPECT_LT(stand[stand.size() / 50], 0.7f * stand[stand.size() / 2]);
 }
 
-/// Sizes on the picture follow the recipe: seen from straight above, the number of grains that a plane through n cells per volume cuts is
-/// 1.458 n^(2/3) per area for Poisson-Voronoi cells (Moller 1989), and 10 to 15 % less for the evener cells of Poisson-disk sites.
+/// Sizes on the picture follow the recipe. All sites lie inside the shape, so what its face shows is the outermost layer of cells: n sites
+/// per volume are n^(-1/3) apart and such a layer holds n^(2/3) cells per area, a little fewer since elimination leaves the cells at the
+/// face larger. (A plane through the interior would cut 1.458 n^(2/3) Poisson-Voronoi cells.)
 TEST_F(PreciousOpal, GrainSizeMatchesTheRecipe) {
     for (const int sites : {300, 2400}) {
         const std::string vdb = (*folder_ / ("ball" + std::to_string(sites) + ".vdb")).string();
@@ -165,8 +166,8 @@ TEST_F(PreciousOpal, GrainSizeMatchesTheRecipe) {
         for (const auto& [grain, touches] : grains) seen += touches ? 0.5 : 1.0;
         const double per_volume = sites / 500.0;
         const double constant = seen / 64.0 / std::pow(per_volume, 2.0 / 3.0);
-        EXPECT_GT(constant, 1.05) << sites;
-        EXPECT_LT(constant, 1.60) << sites;
+        EXPECT_GT(constant, 0.80) << sites;
+        EXPECT_LT(constant, 1.05) << sites;
         std::printf("%d sites: %.1f grains on 64 mm^2, %.3f n^(2/3)\n", sites, seen, constant);
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -26,7 +27,8 @@ class AtomicFileTest : public testing::Test {
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
 
-    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "opal_atomic_file_test";
+    const std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("opal_atomic_file_test_" + std::to_string(::getpid()));
 };
 
 TEST_F(AtomicFileTest, AppearsOnCommitOnly) {

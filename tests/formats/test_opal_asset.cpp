@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <filesystem>
@@ -52,7 +53,8 @@ class OpalAssetTest : public testing::Test {
         file.close();
     }
 
-    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "opal_asset_test";
+    const std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("opal_asset_test_" + std::to_string(::getpid()));
     std::vector<std::string> notices_;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Directions drawn in cells of equal solid angle, compared with the density integrated over each cell by a fine grid.
 void expect_directions_follow_density(const EnvironmentMap& map) {
-    constexpr int rows = 12, columns = 24, draws = 400000, fine = 48;
+    constexpr int rows = 12, columns = 24, draws = 400000, fine = 100;
     const EnvironmentView view = map.view();
     std::vector<double> observed(rows * columns, 0.0), expected(rows * columns, 0.0);
     const auto cell_of = [&](Vec3 d) {
