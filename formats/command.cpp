@@ -26,6 +26,13 @@ void on_interrupt(int signal_number) {
     interrupt_flag = 1;
 }
 
+/// One line whatever a library or a file put into the message.
+std::string one_line(std::string message) {
+    for (char& c : message)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return message;
+}
+
 }  // namespace
 
 int run_command(const std::string& program, const std::function<int()>& body) {
@@ -34,13 +41,13 @@ int run_command(const std::string& program, const std::function<int()>& body) {
     try {
         return body();
     } catch (const InputError& error) {
-        fmt::print(stderr, "{}: error: {}\n", program, error.what());
+        fmt::print(stderr, "{}: error: {}\n", program, one_line(error.what()));
         return 2;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "{}: error: out of memory\n", program);
         return 1;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "{}: error: {}\n", program, error.what());
+        fmt::print(stderr, "{}: error: {}\n", program, one_line(error.what()));
         return 1;
     }
 }

@@ -5,7 +5,9 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
+#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/TopologyToLevelSet.h>
+#include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -24,6 +26,9 @@ namespace opal {
 namespace {
 
 using Quat = openvdb::math::Quat<float>;
+
+/// Each id up to the largest takes an orientation in memory.
+constexpr std::int32_t largest_grain_id = 50'000'000;
 
 /// io::File does not notice a full disk; this archive writes the same bytes through a stream whose errors we see.
 class CheckedArchive : public openvdb::io::Archive {
@@ -140,10 +145,10 @@ class MetadataReader {
 
 OpalConstants read_constants(const MetadataReader& reader, const std::string& file) {
     OpalConstants constants;
-    constants.sphere_diameter_nm = reader.number(metadata_keys::sphere_diameter_nm, 1.0, 1.0e5);
-    constants.n_sphere = reader.number(metadata_keys::n_sphere, 1.0, 10.0);
-    constants.n_medium = reader.number(metadata_keys::n_medium, 1.0, 10.0);
-    constants.coherence_length_um = reader.number(metadata_keys::coherence_length_um, 1.0e-3, 1.0e7);
+    constants.sphere_diameter_nm = reader.number(metadata_keys::sphere_diameter_nm, 50.0, 1000.0);
+    constants.n_sphere = reader.number(metadata_keys::n_sphere, 1.0, 4.0);
+    constants.n_medium = reader.number(metadata_keys::n_medium, 1.0, 4.0);
+    constants.coherence_length_um = reader.number(metadata_keys::coherence_length_um, 0.5, 1.0e4);
     constants.absorber = reader.text(metadata_keys::absorber);
     try {
         constants.sigma_a_per_mm = spectrum_from_text(reader.text(metadata_keys::sigma_a_per_mm));
@@ -156,8 +161,22 @@ OpalConstants read_constants(const MetadataReader& reader, const std::string& fi
     return constants;
 }
 
+/// Clients may leave ids in the background or in inactive voxels, and zeros in active ones; the walk through the grains reads values alone.
+void empty_outside(openvdb::Int32Grid& ids) {
+    openvdb::tools::changeBackground(ids.tree(), 0);
+    openvdb::tools::foreach(ids.beginValueOff(), [](const openvdb::Int32Grid::ValueOffIter& value) {
+        if (*value != 0) value.setValue(0);
+    });
+    openvdb::tools::foreach(ids.beginValueOn(), [](const openvdb::Int32Grid::ValueOnIter& value) {
+        if (*value == 0) value.setValueOff();
+    });
+}
+
 openvdb::Int32Grid::Ptr as_grain_ids(const openvdb::GridBase::Ptr& base, const std::string& file, std::vector<std::string>& notices) {
-    if (const auto ids = openvdb::gridPtrCast<openvdb::Int32Grid>(base)) return ids;
+    if (const auto ids = openvdb::gridPtrCast<openvdb::Int32Grid>(base)) {
+        empty_outside(*ids);
+        return ids;
+    }
     const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(base);
     if (!floats)
         throw InputError(fmt::format("{}: grid grain_id has type {}; allowed: int32, or float holding whole numbers", file,
@@ -167,6 +186,7 @@ openvdb::Int32Grid::Ptr as_grain_ids(const openvdb::GridBase::Ptr& base, const s
     auto accessor = ids->getAccessor();
     for (auto value = floats->cbeginValueOn(); value; ++value) {
         const float id = value.getValue();
+        if (id == 0.0f) continue;
         if (!(id >= 0.0f && id < 2.0e9f) || std::abs(id - std::round(id)) > 1.0e-3f)
             throw InputError(fmt::format("{}: grid grain_id: voxel [{}, {}, {}] holds {}; allowed: whole numbers from 0", file,
                                          value.getCoord().x(), value.getCoord().y(), value.getCoord().z(), id));
@@ -200,6 +220,9 @@ std::int32_t require_valid_ids(const openvdb::Int32Grid& grid, const std::string
         largest = std::max(largest, *value);
     }
     if (largest == 0) throw InputError(fmt::format("{}: grid grain_id: no voxel holds a grain", file));
+    if (largest > largest_grain_id)
+        throw InputError(fmt::format("{}: grid grain_id: holds id {}; allowed: ids up to {} (number the grains from 1)", file, largest,
+                                     largest_grain_id));
     return largest;
 }
 
@@ -235,10 +258,77 @@ void read_sites(const openvdb::points::PointDataGrid& grid, OpalAsset& asset, st
     }
 }
 
-void draw_foreign_orientations(OpalAsset& asset, std::size_t num_grains, std::uint64_t seed) {
-    asset.grain_orientations.clear();
+void draw_orientations(OpalAsset& asset, std::size_t num_grains, std::uint64_t seed, bool foreign) {
     for (std::size_t grain = 1; grain <= num_grains; ++grain)
-        asset.grain_orientations.push_back(random_orientation(seed, true, grain));
+        asset.grain_orientations.push_back(random_orientation(seed, foreign, grain));
+}
+
+void require_valid_shape(const openvdb::FloatGrid& shape, const std::string& file) {
+    if (shape.getGridClass() != openvdb::GRID_LEVEL_SET)
+        throw InputError(fmt::format("{}: grid shape: not marked as a level set", file));
+    if (!(shape.background() > 0.0f)) throw InputError(fmt::format("{}: grid shape: its background must be positive (outside)", file));
+    bool inside = false;
+    for (auto value = shape.cbeginValueOn(); value; ++value) {
+        if (!std::isfinite(*value))
+            throw InputError(fmt::format("{}: grid shape: voxel [{}, {}, {}] holds {}", file, value.getCoord().x(), value.getCoord().y(),
+                                         value.getCoord().z(), *value));
+        inside = inside || *value < 0.0f;
+    }
+    if (!inside) throw InputError(fmt::format("{}: grid shape: has no inside (no negative values)", file));
+}
+
+OpalAsset checked_asset(const RawOpalFile& raw, const std::string& file, const ReadOpalOptions& options,
+                        std::vector<std::string>& notices) {
+    const openvdb::GridBase::Ptr ids = raw.find(grid_names::grain_id);
+    if (!ids) {
+        std::string found;
+        for (const auto& grid : raw.grids) found += (found.empty() ? "" : ", ") + grid->getName();
+        throw InputError(fmt::format("{}: no grid named grain_id (found: {})", file, found.empty() ? "no grids" : found));
+    }
+    OpalAsset asset;
+    asset.grain_id = as_grain_ids(ids, file, notices);
+    require_plain_transform(*asset.grain_id, file);
+    const std::size_t largest_id = std::size_t(require_valid_ids(*asset.grain_id, file));
+
+    const MetadataReader reader(raw.metadata, file);
+    std::size_t num_grains = largest_id;
+    if (reader.has(metadata_keys::schema_version)) {
+        asset.schema_version = reader.integer32(metadata_keys::schema_version);
+        if (asset.schema_version < 1 || asset.schema_version > opal_schema_version)
+            throw InputError(fmt::format("{}: opal schema {} is not known; this program reads 1 to {}", file, asset.schema_version,
+                                         opal_schema_version));
+        asset.constants = read_constants(reader, file);
+        asset.recipe_toml = reader.text(metadata_keys::recipe);
+        asset.program_version = reader.text(metadata_keys::program_version);
+        asset.seed = static_cast<std::uint64_t>(reader.integer64(metadata_keys::seed));
+        const std::int64_t stated = reader.integer64(metadata_keys::num_grains);
+        if (stated < std::int64_t(largest_id) || stated > INT32_MAX)
+            throw InputError(fmt::format("{}: grid grain_id holds id {}, but the file states {} grains", file, largest_id, stated));
+        num_grains = std::size_t(stated);
+    } else {
+        asset.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.25);
+        notices.push_back("made elsewhere: no opal metadata, so crystal and body colour are the recipe's defaults");
+    }
+
+    if (const auto shape = openvdb::gridPtrCast<openvdb::FloatGrid>(raw.find(grid_names::shape))) {
+        require_plain_transform(*shape, file);
+        require_valid_shape(*shape, file);
+        asset.shape = shape;
+    } else {
+        asset.shape = openvdb::tools::topologyToLevelSet(*asset.grain_id, 3, 1, 0, 4);
+        notices.push_back("no level set named shape: the surface was made from the labelled voxels, smoothed");
+    }
+
+    const auto sites = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(raw.find(grid_names::sites));
+    if (sites && options.with_sites) {
+        read_sites(*sites, asset, num_grains, file);
+    } else if (asset.schema_version > 0) {
+        draw_orientations(asset, num_grains, asset.seed, false);
+    } else {
+        draw_orientations(asset, num_grains, options.orientation_seed, true);
+        notices.push_back(fmt::format("no sites: the {} grains' orientations were drawn from seed {}", num_grains, options.orientation_seed));
+    }
+    return asset;
 }
 
 }  // namespace
@@ -323,53 +413,12 @@ OpalAsset read_opal_asset(const std::filesystem::path& path, const ReadOpalOptio
 
 OpalAsset asset_from_raw(const RawOpalFile& raw, const std::string& file, const ReadOpalOptions& options,
                          std::vector<std::string>& notices) {
-    const openvdb::GridBase::Ptr ids = raw.find(grid_names::grain_id);
-    if (!ids) {
-        std::string found;
-        for (const auto& grid : raw.grids) found += (found.empty() ? "" : ", ") + grid->getName();
-        throw InputError(fmt::format("{}: no grid named grain_id (found: {})", file, found.empty() ? "no grids" : found));
+    try {
+        return checked_asset(raw, file, options, notices);
+    } catch (const openvdb::Exception& exception) {
+        // Attributes and grids of another type than their name promises.
+        throw InputError(fmt::format("{}: {}", file, exception.what()));
     }
-    OpalAsset asset;
-    asset.grain_id = as_grain_ids(ids, file, notices);
-    require_plain_transform(*asset.grain_id, file);
-    const std::size_t largest_id = std::size_t(require_valid_ids(*asset.grain_id, file));
-
-    const MetadataReader reader(raw.metadata, file);
-    std::size_t num_grains = largest_id;
-    if (reader.has(metadata_keys::schema_version)) {
-        asset.schema_version = reader.integer32(metadata_keys::schema_version);
-        if (asset.schema_version < 1 || asset.schema_version > opal_schema_version)
-            throw InputError(fmt::format("{}: opal schema {} is not known; this program reads 1 to {}", file, asset.schema_version,
-                                         opal_schema_version));
-        asset.constants = read_constants(reader, file);
-        asset.recipe_toml = reader.text(metadata_keys::recipe);
-        asset.program_version = reader.text(metadata_keys::program_version);
-        asset.seed = static_cast<std::uint64_t>(reader.integer64(metadata_keys::seed));
-        const std::int64_t stated = reader.integer64(metadata_keys::num_grains);
-        if (stated < std::int64_t(largest_id) || stated > INT32_MAX)
-            throw InputError(fmt::format("{}: grid grain_id holds id {}, but the file states {} grains", file, largest_id, stated));
-        num_grains = std::size_t(stated);
-    } else {
-        asset.constants.sigma_a_per_mm = absorber_spectrum("carbon", "", 0.25);
-        notices.push_back("made elsewhere: no opal metadata, so crystal and body colour are the recipe's defaults");
-    }
-
-    if (const auto shape = openvdb::gridPtrCast<openvdb::FloatGrid>(raw.find(grid_names::shape))) {
-        require_plain_transform(*shape, file);
-        asset.shape = shape;
-    } else {
-        asset.shape = openvdb::tools::topologyToLevelSet(*asset.grain_id, 3, 1, 0, 4);
-        notices.push_back("no level set named shape: the surface was made from the labelled voxels, smoothed");
-    }
-
-    const auto sites = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(raw.find(grid_names::sites));
-    if (sites && options.with_sites) {
-        read_sites(*sites, asset, num_grains, file);
-    } else {
-        draw_foreign_orientations(asset, num_grains, options.orientation_seed);
-        notices.push_back(fmt::format("no sites: the {} grains' orientations were drawn from seed {}", num_grains, options.orientation_seed));
-    }
-    return asset;
 }
 
 }  // namespace opal

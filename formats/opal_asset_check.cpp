@@ -34,19 +34,6 @@ void check_grain_ids(const OpalAsset& asset, AssetCheck& check) {
         check.advice.push_back("grid grain_id: tiles only, no leaf: Blender shows such a grid as empty");
 }
 
-void check_shape(const OpalAsset& asset, AssetCheck& check) {
-    if (asset.shape->getGridClass() != openvdb::GRID_LEVEL_SET)
-        check.errors.push_back("grid shape: not marked as a level set");
-    if (!(asset.shape->background() > 0.0f)) check.errors.push_back("grid shape: background must be positive (outside)");
-    bool finite = true, inside = false;
-    for (auto value = asset.shape->cbeginValueOn(); value; ++value) {
-        finite = finite && std::isfinite(*value);
-        inside = inside || *value < 0.0f;
-    }
-    if (!finite) check.errors.push_back("grid shape: holds NaN or infinite values");
-    if (!inside) check.errors.push_back("grid shape: has no inside (no negative values)");
-}
-
 void check_sites(const OpalAsset& asset, AssetCheck& check) {
     std::size_t broken = 0;
     for (const Site& site : asset.sites)
@@ -67,7 +54,6 @@ AssetCheck check_opal_asset(const std::filesystem::path& path) {
     try {
         const OpalAsset asset = asset_from_raw(raw, path.string(), {}, check.advice);
         check_grain_ids(asset, check);
-        check_shape(asset, check);
         check_sites(asset, check);
         check_order(raw, check);
     } catch (const InputError& error) {

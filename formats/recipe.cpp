@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/text.h"
 #include "formats/toml_reader.h"
 
 namespace opal {
@@ -15,6 +16,8 @@ const std::vector<std::string> shape_names = {"ellipsoid", "sphere", "box", "cab
 const std::vector<std::string> tessellation_names = {"additive", "voronoi"};
 const std::vector<std::string> weight_names = {"none", "perlin"};
 const std::vector<std::string> graph_names = {"apollonius", "delaunay"};
+const ExclusiveKeys exclusive_keys = {{"grains.voxel_size_mm", "grains.resolution"},
+                                      {"grains.sintering.probability", "grains.sintering.grains"}};
 
 template <typename Enum>
 Enum enum_from(const std::vector<std::string>& names, const std::string& name) {
@@ -101,6 +104,7 @@ BaseColorRecipe read_base_color(TomlSection section) {
     const NumberRange coefficient = NumberRange::from_zero(1.0e6);
     BaseColorRecipe color;
     color.absorber = section.text("absorber", color.absorber);
+    if (color.absorber.ends_with(".csv")) color.absorber = section.path("absorber").string();
     color.sigma_a_per_mm = section.number("sigma_a_per_mm", color.sigma_a_per_mm, coefficient);
     color.sigma_s_rayleigh_400nm_per_mm = section.number("sigma_s_rayleigh_400nm_per_mm", 0.0, coefficient);
     color.sigma_s_mie_per_mm = section.number("sigma_s_mie_per_mm", 0.0, coefficient);
@@ -109,7 +113,7 @@ BaseColorRecipe read_base_color(TomlSection section) {
     return color;
 }
 
-Recipe read_document(const TomlDocument& document, const std::filesystem::path& base_folder) {
+Recipe read_document(const TomlDocument& document) {
     Recipe recipe;
     TomlSection root = document.root();
     if (!root.has("shape")) root.fail("shape", "is needed: a [shape] table with a kind");
@@ -118,17 +122,7 @@ Recipe read_document(const TomlDocument& document, const std::filesystem::path& 
     recipe.crystal = read_crystal(root.section("crystal"));
     recipe.base_color = read_base_color(root.section("base_color"));
     root.finish();
-    recipe.base_folder = base_folder;
     return recipe;
-}
-
-std::string quoted(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) {
-        if (c == '"' || c == '\\') escaped += '\\';
-        escaped += c;
-    }
-    return '"' + escaped + '"';
 }
 
 /// TOML tells integers from floats: a float keeps its point.
@@ -140,18 +134,18 @@ std::string real(double value) {
 }  // namespace
 
 Recipe read_recipe(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    return read_document(TomlDocument(file, overrides), file.parent_path());
+    return read_document(TomlDocument(file, overrides, exclusive_keys));
 }
 
 Recipe parse_recipe(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-    return read_document(TomlDocument(text, name, overrides), std::filesystem::path(name).parent_path());
+    return read_document(TomlDocument(text, name, overrides, exclusive_keys));
 }
 
 std::string recipe_to_toml(const Recipe& recipe) {
     const ShapeRecipe& shape = recipe.shape;
-    std::string text = fmt::format("[shape]\nkind = {}\n", quoted(name_from(shape_names, shape.kind)));
+    std::string text = fmt::format("[shape]\nkind = {}\n", toml_quoted(name_from(shape_names, shape.kind)));
     if (shape.kind == ShapeKind::mesh)
-        text += fmt::format("file = {}\nscale = {}\n", quoted(shape.mesh_file.filename().string()), real(shape.mesh_scale));
+        text += fmt::format("file = {}\nscale = {}\n", toml_quoted(shape.mesh_file.filename().string()), real(shape.mesh_scale));
     else
         text += fmt::format("size_mm = [{}, {}, {}]\n", real(shape.size_mm[0]), real(shape.size_mm[1]), real(shape.size_mm[2]));
     if (shape.kind == ShapeKind::cabochon) text += fmt::format("girdle_mm = {}\n", real(shape.girdle_mm));
@@ -160,11 +154,11 @@ std::string recipe_to_toml(const Recipe& recipe) {
     text += fmt::format("\n[grains]\nnum_sites = {}\n", grains.num_sites);
     text += recipe.resolution > 0 ? fmt::format("resolution = {}\n", recipe.resolution)
                                   : fmt::format("voxel_size_mm = {}\n", real(grains.voxel_size_mm));
-    text += fmt::format("seed = {}\ntessellation = {}\n", grains.seed, quoted(name_from(tessellation_names, grains.tessellation)));
+    text += fmt::format("seed = {}\ntessellation = {}\n", grains.seed, toml_quoted(name_from(tessellation_names, grains.tessellation)));
     text += fmt::format("weight = {{ kind = {}, amplitude = {}, scale_mm = {}, octaves = {} }}\n",
-                        quoted(name_from(weight_names, grains.weight.kind)), real(grains.weight.amplitude),
+                        toml_quoted(name_from(weight_names, grains.weight.kind)), real(grains.weight.amplitude),
                         real(grains.weight.scale_mm), grains.weight.octaves);
-    text += fmt::format("sintering = {{ graph = {}, {} }}\n", quoted(name_from(graph_names, grains.sintering.graph)),
+    text += fmt::format("sintering = {{ graph = {}, {} }}\n", toml_quoted(name_from(graph_names, grains.sintering.graph)),
                         grains.sintering.target_grains > 0 ? fmt::format("grains = {}", grains.sintering.target_grains)
                                                            : "probability = " + real(grains.sintering.probability));
 
@@ -177,7 +171,7 @@ std::string recipe_to_toml(const Recipe& recipe) {
     text += fmt::format(
         "\n[base_color]\nabsorber = {}\nsigma_a_per_mm = {}\nsigma_s_rayleigh_400nm_per_mm = {}\nsigma_s_mie_per_mm = {}\n"
         "mie_asymmetry = {}\n",
-        quoted(color.absorber), real(color.sigma_a_per_mm), real(color.sigma_s_rayleigh_400nm_per_mm),
+        toml_quoted(std::filesystem::path(color.absorber).filename().string()), real(color.sigma_a_per_mm), real(color.sigma_s_rayleigh_400nm_per_mm),
         real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry));
     return text;
 }

@@ -52,7 +52,7 @@ struct CrystalRecipe {
 };
 
 struct BaseColorRecipe {
-    std::string absorber = "carbon";
+    std::string absorber = "carbon";  ///< a built-in name, or a .csv's path
     double sigma_a_per_mm = 0.25;  ///< at 550 nm
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
     double sigma_s_mie_per_mm = 0.0;
@@ -66,7 +66,6 @@ struct Recipe {
     CrystalRecipe crystal;
     BaseColorRecipe base_color;
     int resolution = 0;                 ///< voxels along the longest side where the recipe asks for that; else 0
-    std::filesystem::path base_folder;  ///< folder that relative paths in the recipe refer to
 };
 
 /// Reads and validates. Throws InputError located at file:line:column.

@@ -167,9 +167,9 @@ std::string vector_text(const std::array<double, 3>& v) { return fmt::format("[{
 
 std::string object_to_toml(const ObjectDescription& object) {
     std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
-    if (!object.file.empty()) text += fmt::format("file = '{}'\n", object.file.string());
+    if (!object.file.empty()) text += fmt::format("file = {}\n", toml_quoted(object.file.string()));
     if (object.kind == ObjectKind::opal) text += fmt::format("orientation_seed = {}\n", object.orientation_seed);
-    if (!object.material.empty()) text += fmt::format("material = '{}'\n", object.material);
+    if (!object.material.empty()) text += fmt::format("material = {}\n", toml_quoted(object.material));
     if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
         text += fmt::format("radius_mm = {}\n", object.radius_mm);
     if (object.kind == ObjectKind::cylinder)
@@ -206,12 +206,12 @@ std::string scene_to_toml(const SceneDescription& scene) {
                         scene.film.aovs.empty() ? "" : fmt::format("\"{}\"", fmt::join(scene.film.aovs, "\", \"")),
                         scene.film.exposure_ev);
     text += fmt::format("\n[environment]\nkind = \"{}\"\n", name(environment_names, scene.environment.kind));
-    if (!scene.environment.file.empty()) text += fmt::format("file = '{}'\n", scene.environment.file.string());
+    if (!scene.environment.file.empty()) text += fmt::format("file = {}\n", toml_quoted(scene.environment.file.string()));
     text += fmt::format("radiance = {}\nrotate_deg = {}\n", scene.environment.radiance, scene.environment.rotate_deg);
     text += fmt::format("\n[opal]\ndiffraction = \"{}\"\ngrains = \"voxels\"\ncompanions = {}\n",
                         name(diffraction_names, scene.opal.diffraction), scene.opal.companions);
     for (const MaterialDescription& material : scene.materials)
-        text += fmt::format("\n[[material]]\nname = '{}'\nkind = \"{}\"\nalbedo = {}\n", material.name,
+        text += fmt::format("\n[[material]]\nname = {}\nkind = \"{}\"\nalbedo = {}\n", toml_quoted(material.name),
                             name(material_names, material.kind), vector_text(material.albedo));
     for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
     return text;

@@ -77,11 +77,8 @@ SampledSpectrum read_spectrum_csv(const std::filesystem::path& path) {
     return spectrum;
 }
 
-SampledSpectrum absorber_spectrum(const std::string& name_or_path, const std::filesystem::path& base_folder,
-                                  double value_at_550nm) {
-    const std::filesystem::path path = name_or_path;
-    SampledSpectrum spectrum = path.extension() == ".csv" ? read_spectrum_csv(path.is_absolute() ? path : base_folder / path)
-                                                          : builtin_absorber(name_or_path);
+SampledSpectrum absorber_spectrum(const std::string& name_or_path, double value_at_550nm) {
+    SampledSpectrum spectrum = name_or_path.ends_with(".csv") ? read_spectrum_csv(name_or_path) : builtin_absorber(name_or_path);
     const double reference = spectrum.at(550.0);
     if (value_at_550nm > 0.0 && !(reference > 0.0))
         throw InputError(fmt::format("absorber '{}': zero at 550 nm, so sigma_a_per_mm cannot scale it", name_or_path));

@@ -47,6 +47,18 @@ std::string join(const std::vector<std::string>& names, std::string_view separat
     return joined;
 }
 
+std::string toml_quoted(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        if (static_cast<unsigned char>(c) < 0x20)
+            quoted += c == '\n' ? "\\n" : (c == '\t' ? "\\t" : "\\u0020");
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     const std::string nearest = nearest_name(name, candidates);
     return nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?";

@@ -13,6 +13,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// "a, b, c".
 std::string join(const std::vector<std::string>& names, std::string_view separator = ", ");
 
+/// A TOML basic string: quoted, with what needs it escaped.
+std::string toml_quoted(std::string_view text);
+
 /// "; did you mean 'x'?" or "", ready to append to a message.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 

@@ -38,7 +38,8 @@ std::string describe_type(const toml::node& node) {
 std::string read_whole_file(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw InputError(fmt::format("{}: no such file", path.string()));
-    if (std::filesystem::is_directory(path, error)) throw InputError(fmt::format("{}: is a folder, not a file", path.string()));
+    if (!std::filesystem::is_regular_file(path, error))
+        throw InputError(fmt::format("{}: is {}, not a file", path.string(), std::filesystem::is_directory(path, error) ? "a folder" : "a device"));
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
@@ -47,7 +48,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
 }
 
 bool is_array_index(std::string_view text) {
-    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return !text.empty() && text.size() < 10 && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 /// The value of an override as a one-key document, so that its node carries the override's own text as its source.
@@ -92,6 +93,12 @@ void apply_override(toml::table& root, const std::string& assignment) {
     // Extracting keeps the node's source region; insert_or_assign of a copy would drop it.
     toml::node* value = value_table.get("value");
     value->visit([&](auto& concrete) { table->insert_or_assign(parts.back(), std::move(concrete)); });
+}
+
+void erase_key(toml::table& root, const std::string& dotted_key) {
+    const std::size_t dot = dotted_key.rfind('.');
+    const toml::node_view<toml::node> parent = dot == std::string::npos ? toml::node_view<toml::node>(root) : root.at_path(dotted_key.substr(0, dot));
+    if (toml::table* table = parent.as_table()) table->erase(dotted_key.substr(dot == std::string::npos ? 0 : dot + 1));
 }
 
 }  // namespace
@@ -249,22 +256,24 @@ void TomlSection::finish() const {
     }
 }
 
-TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides) : name_(file.string()) {
-    parse(read_whole_file(file), overrides);
-}
+TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides, const ExclusiveKeys& exclusive)
+    : TomlDocument(read_whole_file(file), file.string(), overrides, exclusive) {}
 
-TomlDocument::TomlDocument(const std::string& text, const std::string& name, const std::vector<std::string>& overrides)
+TomlDocument::TomlDocument(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                           const ExclusiveKeys& exclusive)
     : name_(name) {
-    parse(text, overrides);
-}
-
-void TomlDocument::parse(const std::string& text, const std::vector<std::string>& overrides) {
     try {
         table_ = toml::parse(text, name_);
     } catch (const toml::parse_error& error) {
         throw InputError(fmt::format("{}: {}", describe_location(error.source(), name_), error.description()));
     }
-    for (const std::string& assignment : overrides) apply_override(table_, assignment);
+    for (const std::string& assignment : overrides) {
+        apply_override(table_, assignment);
+        for (const auto& [first, second] : exclusive) {
+            if (assignment.starts_with(first + "=")) erase_key(table_, second);
+            if (assignment.starts_with(second + "=")) erase_key(table_, first);
+        }
+    }
 }
 
 }  // namespace opal

@@ -65,19 +65,22 @@ class TomlSection {
     std::vector<std::string> known_keys_;
 };
 
+/// Pairs of keys of which a file may give one.
+using ExclusiveKeys = std::vector<std::pair<std::string, std::string>>;
+
 /// A parsed file with `--set key.path=value` overrides applied (value in TOML syntax; a bare word is a string; elements of an array
 /// of tables are named by number: object.0.file=...).
 class TomlDocument {
   public:
-    TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+    /// An override of one of two `exclusive` keys takes the place of the other.
+    TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides, const ExclusiveKeys& exclusive = {});
     /// From text rather than a file; `name` stands for the file in messages.
-    TomlDocument(const std::string& text, const std::string& name, const std::vector<std::string>& overrides);
+    TomlDocument(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                 const ExclusiveKeys& exclusive = {});
 
     TomlSection root() const { return {&table_, "", name_}; }
 
   private:
-    void parse(const std::string& text, const std::vector<std::string>& overrides);
-
     std::string name_;
     toml::table table_;
 };

@@ -27,9 +27,17 @@ struct RenderOptions {
     int samples = 0;
     std::string time;
     int threads = 0;
-    std::optional<std::uint64_t> seed;
+    std::optional<std::int64_t> seed;
     std::string device = "auto";
-    std::string command_line;
+    /// The command as it decides the picture: without the output's name, threads and statistics, so that the same picture has the same bytes.
+    std::string command() const {
+        std::string text = "opal-render " + scene_file.string();
+        for (const std::string& assignment : overrides) text += " --set " + assignment;
+        if (samples > 0) text += fmt::format(" --spp {}", samples);
+        if (!time.empty()) text += " --time " + time;
+        if (seed) text += fmt::format(" --seed {}", *seed);
+        return text;
+    }
 };
 
 constexpr const char* footer = R"(Lengths are mm, wavelengths vacuum nm, angles degrees.
@@ -65,7 +73,7 @@ std::optional<int> parse_options(int argc, char** argv, RenderOptions& options) 
     app.add_option("--spp", options.samples, "samples per pixel, instead of render.samples")->check(CLI::Range(1, 1 << 24));
     app.add_option("--time", options.time, "stop after this long: seconds, or 90s, 5m, 2h");
     app.add_option("--threads", options.threads, "worker threads (default: all cores)")->check(CLI::Range(1, 4096));
-    app.add_option("--seed", options.seed, "random seed, instead of render.seed");
+    app.add_option("--seed", options.seed, "random seed, instead of render.seed")->check(CLI::Range(std::int64_t(0), INT64_MAX));
     app.add_option("--device", options.device, "auto, cpu or cuda (this build: cpu)")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
     app.add_option("--stats", options.stats_file, "write statistics as JSON");
     try {
@@ -77,7 +85,7 @@ std::optional<int> parse_options(int argc, char** argv, RenderOptions& options) 
     }
     if (options.device == "cuda") throw InputError("--device cuda: this build has no CUDA backend; allowed: auto, cpu");
     if (options.output.extension() != ".exr") throw InputError(fmt::format("output {}: the name must end in .exr", options.output.string()));
-    for (int i = 0; i < argc; ++i) options.command_line += (i ? " " : "") + std::string(argv[i]);
+    if (options.stats_file == options.output) throw InputError("--stats: names the same file as the picture");
     return std::nullopt;
 }
 
@@ -141,7 +149,7 @@ int render_command(int argc, char** argv) {
     const double time_limit_s = parse_duration(options.time);
     SceneDescription scene = read_scene(options.scene_file, options.overrides);
     if (options.samples > 0) scene.render.samples = options.samples;
-    if (options.seed) scene.render.seed = *options.seed;
+    if (options.seed) scene.render.seed = std::uint64_t(*options.seed);
     std::filesystem::path png = options.output;
     png.replace_extension(".png");
     require_writable(options.output);
@@ -170,7 +178,8 @@ int render_command(int argc, char** argv) {
 
     Image image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, image);
-    image.attributes = {{"opal:scene", scene_to_toml(scene)},
+    image.attributes = {{"opal:command", options.command()},
+                        {"opal:scene", scene_to_toml(scene)},
                         {"opal:recipe", host.recipe_toml()},
                         {"opal:version", OPAL_VERSION_STRING},
                         {"Software", std::string("opal-render ") + OPAL_VERSION_STRING}};
@@ -185,6 +194,9 @@ int render_command(int argc, char** argv) {
                scene.render.width, scene.render.height, outcome.finished_samples, format_duration(outcome.seconds),
                double(film.total_samples()) / std::max(1.0e-9, outcome.seconds), counters.truncated_paths, counters.lost_paths,
                counters.not_a_number);
+    if (counters.not_a_number > 0)
+        fmt::print(stderr, "opal-render: warning: {} samples were not numbers and count as black; please report the scene\n",
+                   counters.not_a_number);
     return 0;
 }
 

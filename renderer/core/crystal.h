@@ -49,12 +49,15 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
     const int square_limit = int(g_max_per_nm * edge_nm * g_max_per_nm * edge_nm);
     int count = 0;
     for (int norm = 1; norm <= square_limit; ++norm)
-        for (int h = -limit; h <= limit; ++h)
-            for (int k = -limit; k <= limit; ++k)
-                for (int l = -limit; l <= limit; ++l) {
+        for (int h = 0; h <= limit; ++h)
+            for (int k = -limit; k <= limit; ++k) {
+                const int rest = norm - h * h - k * k;
+                const int magnitude = rest < 0 ? -1 : int(sqrt(double(rest)) + 0.5);
+                if (magnitude < 0 || magnitude * magnitude != rest) continue;
+                for (int l = -magnitude; l <= magnitude; l += max_of(1, 2 * magnitude)) {
                     const bool allowed = ((h ^ k) & 1) == 0 && ((k ^ l) & 1) == 0;
                     const bool first_of_pair = h > 0 || (h == 0 && (k > 0 || (k == 0 && l > 0)));
-                    if (!allowed || !first_of_pair || h * h + k * k + l * l != norm) continue;
+                    if (!allowed || !first_of_pair) continue;
                     const double root = sqrt(double(norm));
                     const double g_per_nm = root / edge_nm;
                     if (count < capacity)
@@ -64,6 +67,7 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
                                         h, k, l};
                     ++count;
                 }
+            }
     return count;
 }
 

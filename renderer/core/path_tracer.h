@@ -60,6 +60,7 @@ class PathTracer {
         for (;; ++bounce) {
             RayHit hit;
             const bool found = intersector_.closest(ray, hit);
+            if (bounce == 0 && found && meets_opal_from_within(ray, hit)) inside_ = true;
             if (bounce == scene_.max_bounces && (found || inside_)) {
                 const Lanes lost = weights_.contribution();
                 for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
@@ -88,6 +89,12 @@ class PathTracer {
             ray = surface.material < 0 ? meet_opal(ray, surface, bounce) : meet_diffuse(ray, surface);
             if (!survives_roulette(bounce)) return;
         }
+    }
+
+    /// A camera may stand inside the opal: the first surface it sees tells.
+    OPAL_HD bool meets_opal_from_within(const Ray& ray, const RayHit& hit) const {
+        if (scene_.meshes[hit.mesh].material >= 0) return false;
+        return dot(ray.direction, surface_at(scene_, hit).geometric_normal) > 0.0f;
     }
 
     OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface, int bounce) {

@@ -43,8 +43,14 @@ void render_tile(const HostScene& scene, const EmbreeScene& intersector, int til
             }
 }
 
-/// Samples of the next pass: few at first, so that a picture is there early, then more, to keep the film's memory traffic low.
-int pass_size(int done) { return done < 4 ? 1 : (done < 16 ? 4 : 16); }
+/// Samples of the next pass: few at first, so that a picture is there early, then more, to keep the film's memory traffic low; no
+/// more than the time that is left allows.
+int pass_size(int done, double elapsed_s, double time_limit_s) {
+    const int size = done < 4 ? 1 : (done < 16 ? 4 : 16);
+    if (time_limit_s <= 0.0 || done == 0) return size;
+    const double affordable = (time_limit_s - elapsed_s) * done / std::max(1.0e-3, elapsed_s);
+    return std::max(1, std::min(size, int(affordable)));
+}
 
 }  // namespace
 
@@ -60,7 +66,7 @@ RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector,
     RenderOutcome outcome;
 
     for (int done = 0; done < limits.samples && !outcome.interrupted;) {
-        const int end = std::min(limits.samples, done + pass_size(done));
+        const int end = std::min(limits.samples, done + pass_size(done, watch.seconds(), limits.time_s));
         tbb::parallel_for(tbb::blocked_range<int>(0, num_tiles, 1), [&](const tbb::blocked_range<int>& range) {
             for (int tile = range.begin(); tile != range.end() && !interrupt_requested(); ++tile) {
                 render_tile(scene, intersector, tile, done, end, film, sums[std::size_t(tile)]);

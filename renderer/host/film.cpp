@@ -21,6 +21,7 @@ void SpectrumTotals::add(const SpectrumTotals& other) {
         radiance[i] += other.radiance[i];
         radiance_squared[i] += other.radiance_squared[i];
         truncated[i] += other.truncated[i];
+        truncated_squared[i] += other.truncated_squared[i];
     }
     for (int c = 0; c < 3; ++c) truncated_rgb[c] += other.truncated_rgb[c];
     samples += other.samples;
@@ -49,6 +50,7 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const PathWave
         totals.radiance[bins[i]] += in_bin[i];
         const double truncated = double(result.truncated.v[i]) * per_density;
         totals.truncated[bins[i]] += truncated / bin_width_nm(bins[i]);
+        totals.truncated_squared[bins[i]] += wavelengths.count * truncated * truncated / (bin_width_nm(bins[i]) * bin_width_nm(bins[i]));
         const double lost = truncated * double(table_at(tables.white, wavelengths.wavelength_nm[i]));
         lost_x += lost * double(observer.x);
         lost_y += lost * double(observer.y);

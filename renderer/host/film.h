@@ -20,6 +20,7 @@ struct SpectrumTotals {
     std::array<double, num_bins> radiance = {};
     std::array<double, num_bins> radiance_squared = {};  ///< of single samples
     std::array<double, num_bins> truncated = {};         ///< throughput lost at the bounce limit
+    std::array<double, num_bins> truncated_squared = {}; ///< upper bound: of single lanes
     std::array<double, 3> truncated_rgb = {};            ///< the same in linear sRGB under white of radiance 1
     std::uint64_t samples = 0;
 

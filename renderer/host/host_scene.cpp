@@ -22,7 +22,8 @@ int choose_pairs(const CrystalParameters& crystal, PlanePair* chosen, int& recip
     const int inside = reciprocal_pairs(crystal, units::wavelength_min_nm, pairs.data(), max_plane_pairs);
     reciprocal_points = 2 * inside + 1;
     pairs.resize(std::size_t(std::min(inside, max_plane_pairs)));
-    if (inside > max_tested_pairs) {
+    std::erase_if(pairs, [](const PlanePair& pair) { return !(pair.epsilon > 0.0f); });
+    if (pairs.size() > max_tested_pairs) {
         std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.epsilon > b.epsilon; });
         pairs.resize(max_tested_pairs);
         notices.push_back(fmt::format("{} families of planes can diffract visible light; the {} strongest are used (next: {:.2g} of the first)",

@@ -73,6 +73,7 @@ TEST_F(BadInput, Mesh) {
 }
 
 TEST_F(BadInput, ModelCommandLine) {
+    expect_failure(opal_model + " build /dev/zero -o " + at("out.vdb"), 2, "is a device, not a file");
     expect_failure(opal_model + " biuld", 2, "opal-model: error: ");
     expect_failure(opal_model + " build " + at("good.toml"), 2, "--output");
     expect_failure(opal_model + " build " + at("good.toml") + " -o " + at("out.txt"), 2, ".vdb");
@@ -119,6 +120,9 @@ TEST_F(BadInput, Scene) {
     expect_failure(render("scene.toml", "--device cuda"), 2, "no CUDA backend");
     expect_failure(render("scene.toml", "--time soon"), 2, "--time soon: expected");
     expect_failure(render("scene.toml", "--spp 0"), 2, "--spp");
+    expect_failure(render("scene.toml", "--seed -1"), 2, "--seed");
+    expect_failure(render("scene.toml", "--set object.99999999999999999999999.file=x"), 2, "there are 1 entries");
+    expect_failure(render("scene.toml", "--stats " + at("out.exr")), 2, "same file as the picture");
     expect_failure(opal_render + " " + at("scene.toml") + " -o " + at("out.png"), 2, "must end in .exr");
     expect_failure(opal_render + " " + at("scene.toml") + " -o " + at("none/out.exr"), 2, "does not exist");
     expect_nothing_written(files);

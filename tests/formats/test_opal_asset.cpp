@@ -35,7 +35,7 @@ class OpalAssetTest : public testing::Test {
                     if (i * i + j * j + k * k < 400) accessor.setValueOn({i, j, k}, i < 0 ? 1 : 2);
         asset.sites = {{{-1.0, 0.0, 0.0}, 0.125f, 1}, {{1.0, 0.1, 0.2}, -0.25f, 2}, {{1.0, -0.3, 0.7}, 0.0f, 2}};
         asset.grain_orientations = {random_orientation(3, false, 1), random_orientation(3, false, 2)};
-        asset.constants.sigma_a_per_mm = absorber_spectrum("carbon", "", 0.4);
+        asset.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.4);
         asset.recipe_toml = "[shape]\nkind = \"sphere\"\n";
         asset.seed = 3;
         return asset;
@@ -124,6 +124,42 @@ TEST_F(OpalAssetTest, ForeignLabelsReadWithNotices) {
     floats->tree().setValueOn({1, 0, 0}, 2.0f);
     write_foreign(folder_ / "floats.vdb", floats, "grain_id");
     EXPECT_EQ(read(folder_ / "floats.vdb").num_grains(), 2u);
+}
+
+TEST_F(OpalAssetTest, WhatLiesOutsideIsEmptied) {
+    // Ids left in the background and in inactive voxels, zeros left active: what other programs may write.
+    auto ids = openvdb::Int32Grid::create(900000);
+    ids->tree().setValueOn({0, 0, 0}, 1);
+    ids->tree().setValueOn({1, 0, 0}, 2);
+    ids->tree().setValueOn({2, 0, 0}, 0);
+    ids->tree().setValueOff({3, 0, 0}, 77);
+    write_foreign(folder_ / "dirty.vdb", ids, "grain_id");
+    const OpalAsset asset = read(folder_ / "dirty.vdb");
+    EXPECT_EQ(asset.num_grains(), 2u);
+    EXPECT_EQ(asset.grain_id->activeVoxelCount(), 2u);
+    for (const openvdb::Coord outside : {openvdb::Coord(2, 0, 0), openvdb::Coord(3, 0, 0), openvdb::Coord(5, 5, 5), openvdb::Coord(5000, 0, 0)})
+        EXPECT_EQ(asset.grain_id->tree().getValue(outside), 0);
+}
+
+TEST_F(OpalAssetTest, ReSavedWithoutSitesKeepsItsOrientations) {
+    OpalAsset asset = two_grain_ball();
+    write_opal_asset(asset, folder_ / "whole.vdb");
+    RawOpalFile raw = read_raw_opal_file(folder_ / "whole.vdb");
+    raw.grids.pop_back();
+    const OpalAsset back = asset_from_raw(raw, "resaved.vdb", {}, notices_);
+    for (std::size_t g = 0; g < 2; ++g)
+        for (int c = 0; c < 4; ++c) EXPECT_EQ(back.grain_orientations[g][c], asset.grain_orientations[g][c]);
+}
+
+TEST_F(OpalAssetTest, BrokenShapesAndSparseIdsAreNamed) {
+    OpalAsset asset = two_grain_ball();
+    asset.shape->tree().setValueOn({20, 0, 0}, std::nanf(""));
+    write_opal_asset(asset, folder_ / "nan_shape.vdb");
+    EXPECT_INPUT_ERROR(read(folder_ / "nan_shape.vdb"), "grid shape: voxel [20, 0, 0] holds nan");
+    auto ids = openvdb::Int32Grid::create(0);
+    ids->tree().setValueOn({0, 0, 0}, 1900000000);
+    write_foreign(folder_ / "hashed.vdb", ids, "grain_id");
+    EXPECT_INPUT_ERROR(read(folder_ / "hashed.vdb"), "holds id 1900000000; allowed: ids up to");
 }
 
 TEST_F(OpalAssetTest, BrokenIdsAreNamedByVoxel) {

@@ -37,6 +37,18 @@ TEST(Recipe, OverridesSetAnyKey) {
     EXPECT_EQ(recipe.grains.weight.amplitude, 0.25);
 }
 
+TEST(Recipe, AnOverrideTakesThePlaceOfItsAlternative) {
+    const Recipe recipe = parse(minimal + "[grains]\nvoxel_size_mm = 0.05\nsintering = { probability = 0.1 }\n",
+                                {"grains.resolution=64", "grains.sintering.grains=300"});
+    EXPECT_EQ(recipe.resolution, 64);
+    EXPECT_EQ(recipe.grains.sintering.target_grains, 300);
+}
+
+TEST(Recipe, AbsorberFilesAreRelativeToWhoNamesThem) {
+    EXPECT_EQ(parse_recipe(minimal + "[base_color]\nabsorber = \"ink.csv\"\n", "sub/r.toml", {}).base_color.absorber, "sub/ink.csv");
+    EXPECT_EQ(parse_recipe(minimal, "sub/r.toml", {"base_color.absorber=ink.csv"}).base_color.absorber, "ink.csv");
+}
+
 TEST(Recipe, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_sites = 0\n"), "r.toml:4:13: grains.num_sites: 0 is out of range; allowed: 1 to");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_site = 5\n"), "r.toml:4:1: unknown key 'grains.num_site'; did you mean 'num_sites'?");

@@ -25,11 +25,11 @@ TEST(Spectrum, InterpolatesLinearlyAndHoldsTheEnds) {
 }
 
 TEST(Spectrum, AbsorberIsScaledAt550nm) {
-    const SampledSpectrum carbon = absorber_spectrum("carbon", "", 0.25);
+    const SampledSpectrum carbon = absorber_spectrum("carbon", 0.25);
     EXPECT_NEAR(carbon.at(550.0), 0.25, 1e-12);
     EXPECT_GT(carbon.at(400.0), carbon.at(700.0));
-    EXPECT_NEAR(absorber_spectrum("neutral", "", 0.5).at(400.0), 0.5, 1e-12);
-    EXPECT_INPUT_ERROR(absorber_spectrum("carbn", "", 1.0), "did you mean 'carbon'?");
+    EXPECT_NEAR(absorber_spectrum("neutral", 0.5).at(400.0), 0.5, 1e-12);
+    EXPECT_INPUT_ERROR(absorber_spectrum("carbn", 1.0), "did you mean 'carbon'?");
 }
 
 TEST(Spectrum, CsvReadsAndItsErrorsAreLocated) {

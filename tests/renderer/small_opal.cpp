@@ -12,7 +12,7 @@
 
 namespace opal {
 
-SmallOpal::SmallOpal() { constants.sigma_a_per_mm = absorber_spectrum("neutral", "", 0.0); }
+SmallOpal::SmallOpal() { constants.sigma_a_per_mm = absorber_spectrum("neutral", 0.0); }
 
 OpalAsset SmallOpal::make() const {
     initialize_openvdb();

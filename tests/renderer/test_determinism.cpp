@@ -16,7 +16,7 @@ TEST(Determinism, SameBitsFromAnyNumberOfThreads) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 300.0;
     small.constants.sigma_s_mie_per_mm = 0.2;
-    small.constants.sigma_a_per_mm = absorber_spectrum("carbon", "", 0.2);
+    small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.2);
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
     const std::string scene = "[render]\nwidth = 80\nheight = 60\n[film]\naovs = [\"object_id\", \"grain_id\", \"depth\", \"normal\"]\n"

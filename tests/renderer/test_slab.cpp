@@ -23,7 +23,7 @@ TEST(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
     small.grains = 4;
     small.constants.n_sphere = 1.5;
     small.constants.n_medium = 1.5;
-    small.constants.sigma_a_per_mm = absorber_spectrum("carbon", "", 1.2);
+    small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 1.2);
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "slab.vdb");
     const Rendered rendered = render_text(
