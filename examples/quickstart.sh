@@ -13,7 +13,7 @@ echo "modelling"
 build/release/bin/opal-model build examples/precious_opal/recipe.toml -o out/precious_opal.vdb --report out/precious_opal.report.json
 echo "rendering"
 build/release/bin/opal-render examples/precious_opal/scene.toml -o out/precious_opal.exr --stats out/precious_opal.stats.json \
-    --set render.width=640 --set render.height=480 --spp 64 "$@"
+    --set render.width=640 --set render.height=480 --spp 96 "$@"
 
 echo
 echo "the opal:    out/precious_opal.vdb   (opens in Blender and Houdini; build/release/bin/opal-model info shows what is inside)"

@@ -15,10 +15,10 @@ struct SoftBox {
 };
 
 constexpr SoftBox soft_boxes[] = {
-    {150.0, 46.0, 12.0, 10.0, 0.12, {18.0f, 17.6f, 16.8f}},
-    {-14.0, 28.0, 4.0, 18.0, 0.15, {9.0f, 9.2f, 9.6f}},
-    {-80.0, 68.0, 9.0, 6.0, 0.2, {7.0f, 7.0f, 7.0f}},
-    {70.0, 30.0, 20.0, 4.0, 0.2, {5.0f, 5.0f, 5.1f}},
+    {150.0, 46.0, 9.5, 8.0, 0.12, {30.0f, 29.3f, 28.0f}},
+    {-14.0, 28.0, 3.5, 16.0, 0.15, {14.0f, 14.3f, 15.0f}},
+    {-80.0, 68.0, 7.0, 5.0, 0.2, {12.0f, 12.0f, 12.0f}},
+    {70.0, 30.0, 16.0, 3.0, 0.2, {9.0f, 9.0f, 9.2f}},
 };
 
 float fade(double offset, double half_size, double edge) {
@@ -44,7 +44,7 @@ float coverage(const SoftBox& box, Vec3 direction) {
 
 Rgb studio_radiance(Vec3 direction) {
     // A dim room, a little brighter towards the ceiling.
-    const float surround = 0.04f + 0.05f * max_of(0.0f, direction.z);
+    const float surround = 0.025f + 0.03f * max_of(0.0f, direction.z);
     Rgb sum{surround, surround, surround * 1.04f};
     for (const SoftBox& box : soft_boxes) {
         const float covered = coverage(box, direction);
