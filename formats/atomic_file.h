@@ -5,8 +5,8 @@
 
 namespace opal {
 
-/// An output that appears whole or not at all: write to `temporary_path()`, then `commit()`. The temporary lies in the same folder
-/// and keeps the extension, so that libraries that choose a format by name choose right. Without a commit it is removed.
+/// An output that appears whole or not at all: write to `temporary_path()`, then `commit()`. The temporary lies in the same
+/// folder and keeps the extension, so that libraries that choose a format by name choose right. Without a commit it is removed.
 class AtomicFile {
   public:
     /// Throws InputError where the folder does not exist or cannot be written.

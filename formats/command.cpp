@@ -60,7 +60,9 @@ void catch_interrupts() {
     sigaction(SIGTERM, &action, nullptr);
 }
 
-bool interrupt_requested() { return interrupt_flag != 0; }
+bool interrupt_requested() {
+    return interrupt_flag != 0;
+}
 
 void throw_if_interrupted() {
     if (interrupt_requested()) throw Interrupted();
@@ -75,7 +77,9 @@ struct Progress::State {
     bool printed = false;
 };
 
-Progress::Progress(std::string task) : state_(new State) { state_->task = std::move(task); }
+Progress::Progress(std::string task) : state_(new State) {
+    state_->task = std::move(task);
+}
 
 Progress::~Progress() {
     if (state_->terminal && state_->printed) fmt::print(stderr, "\r\033[K");

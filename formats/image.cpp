@@ -30,7 +30,8 @@ void write_image(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
     // Libraries below OpenImageIO can lose a late write error (full disk); a file that reads back whole has none.
     const std::unique_ptr<OIIO::ImageInput> check = OIIO::ImageInput::open(name);
     std::vector<float> row(std::size_t(spec.width) * spec.nchannels);
-    if (!check || !check->read_scanlines(0, 0, spec.height - 1, spec.height, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data()))
+    if (!check ||
+        !check->read_scanlines(0, 0, spec.height - 1, spec.height, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data()))
         throw SystemError(fmt::format("{}: writing failed: the file does not read back (disk full?)", path.string()));
     file.commit();
 }
@@ -69,8 +70,7 @@ Image read_image(const std::filesystem::path& path) {
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
     if (!input) throw InputError(fmt::format("{}: not a readable image: {}", path.string(), one_line(OIIO::geterror())));
     const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1)
-        throw InputError(fmt::format("{}: not a flat image", path.string()));
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1) throw InputError(fmt::format("{}: not a flat image", path.string()));
     Image image;
     image.width = spec.width;
     image.height = spec.height;

@@ -49,7 +49,8 @@ double site_spacing_mm(const std::vector<Site>& sites, double voxel_size_mm) {
 }
 
 template <typename Value>
-void fill_attribute(openvdb::points::PointDataTree& tree, const std::string& name, const std::function<Value(std::int32_t id)>& of) {
+void fill_attribute(openvdb::points::PointDataTree& tree, const std::string& name,
+                    const std::function<Value(std::int32_t id)>& of) {
     openvdb::points::appendAttribute<Value>(tree, name);
     for (auto leaf = tree.beginLeaf(); leaf; ++leaf) {
         const openvdb::points::AttributeHandle<std::int32_t> id(leaf->constAttributeArray("id"));
@@ -91,7 +92,9 @@ openvdb::points::PointDataGrid::Ptr sites_to_points(const OpalAsset& asset) {
 openvdb::MetaMap file_metadata(const OpalAsset& asset) {
     const OpalConstants& constants = asset.constants;
     openvdb::MetaMap metadata;
-    const auto text = [&](const char* key, const std::string& value) { metadata.insertMeta(key, openvdb::StringMetadata(value)); };
+    const auto text = [&](const char* key, const std::string& value) {
+        metadata.insertMeta(key, openvdb::StringMetadata(value));
+    };
     const auto number = [&](const char* key, double value) { metadata.insertMeta(key, openvdb::DoubleMetadata(value)); };
     metadata.insertMeta(metadata_keys::schema_version, openvdb::Int32Metadata(opal_schema_version));
     text(metadata_keys::program_version, OPAL_VERSION_STRING);
@@ -122,7 +125,8 @@ class MetadataReader {
     double number(const char* key, double min, double max) const {
         const double value = typed<openvdb::DoubleMetadata>(key)->value();
         if (!(value >= min && value <= max))
-            throw InputError(fmt::format("{}: metadata '{}': {} is out of range; allowed: {} to {}", file_, key, value, min, max));
+            throw InputError(
+                fmt::format("{}: metadata '{}': {} is out of range; allowed: {} to {}", file_, key, value, min, max));
         return value;
     }
     std::int64_t integer64(const char* key) const { return typed<openvdb::Int64Metadata>(key)->value(); }
@@ -161,18 +165,20 @@ OpalConstants read_constants(const MetadataReader& reader, const std::string& fi
     return constants;
 }
 
-/// Clients may leave ids in the background or in inactive voxels, and zeros in active ones; the walk through the grains reads values alone.
+/// Clients may leave ids in the background or in inactive voxels, and zeros in active ones; the walk through the grains reads
+/// values alone.
 void empty_outside(openvdb::Int32Grid& ids) {
     openvdb::tools::changeBackground(ids.tree(), 0);
-    openvdb::tools::foreach(ids.beginValueOff(), [](const openvdb::Int32Grid::ValueOffIter& value) {
+    openvdb::tools::foreach (ids.beginValueOff(), [](const openvdb::Int32Grid::ValueOffIter& value) {
         if (*value != 0) value.setValue(0);
     });
-    openvdb::tools::foreach(ids.beginValueOn(), [](const openvdb::Int32Grid::ValueOnIter& value) {
+    openvdb::tools::foreach (ids.beginValueOn(), [](const openvdb::Int32Grid::ValueOnIter& value) {
         if (*value == 0) value.setValueOff();
     });
 }
 
-openvdb::Int32Grid::Ptr as_grain_ids(const openvdb::GridBase::Ptr& base, const std::string& file, std::vector<std::string>& notices) {
+openvdb::Int32Grid::Ptr as_grain_ids(const openvdb::GridBase::Ptr& base, const std::string& file,
+                                     std::vector<std::string>& notices) {
     if (const auto ids = openvdb::gridPtrCast<openvdb::Int32Grid>(base)) {
         empty_outside(*ids);
         return ids;
@@ -205,24 +211,26 @@ void require_plain_transform(const openvdb::GridBase& grid, const std::string& f
     if (plain) {
         const openvdb::Mat4R matrix = transform.baseMap()->getAffineMap()->getMat4();
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) plain = plain && (i == j ? matrix[i][j] > 0.0 : std::abs(matrix[i][j]) < 1.0e-9 * matrix[i][i]);
+            for (int j = 0; j < 3; ++j)
+                plain = plain && (i == j ? matrix[i][j] > 0.0 : std::abs(matrix[i][j]) < 1.0e-9 * matrix[i][i]);
     }
     if (!plain)
-        throw InputError(fmt::format("{}: grid {}: its transform is not a uniform scale with a translation", file, grid.getName()));
+        throw InputError(
+            fmt::format("{}: grid {}: its transform is not a uniform scale with a translation", file, grid.getName()));
 }
 
 std::int32_t require_valid_ids(const openvdb::Int32Grid& grid, const std::string& file) {
     std::int32_t largest = 0;
     for (auto value = grid.cbeginValueOn(); value; ++value) {
         if (*value < 0)
-            throw InputError(fmt::format("{}: grid grain_id: voxel [{}, {}, {}] holds {}; allowed: ids from 1 (0 is outside)", file,
-                                         value.getCoord().x(), value.getCoord().y(), value.getCoord().z(), *value));
+            throw InputError(fmt::format("{}: grid grain_id: voxel [{}, {}, {}] holds {}; allowed: ids from 1 (0 is outside)",
+                                         file, value.getCoord().x(), value.getCoord().y(), value.getCoord().z(), *value));
         largest = std::max(largest, *value);
     }
     if (largest == 0) throw InputError(fmt::format("{}: grid grain_id: no voxel holds a grain", file));
     if (largest > largest_grain_id)
-        throw InputError(fmt::format("{}: grid grain_id: holds id {}; allowed: ids up to {} (number the grains from 1)", file, largest,
-                                     largest_grain_id));
+        throw InputError(fmt::format("{}: grid grain_id: holds id {}; allowed: ids up to {} (number the grains from 1)", file,
+                                     largest, largest_grain_id));
     return largest;
 }
 
@@ -235,14 +243,15 @@ void read_sites(const openvdb::points::PointDataGrid& grid, OpalAsset& asset, st
         for (const char* name : {"P", "id", "grain", "weight", "orient"})
             if (!leaf->hasAttribute(name)) throw InputError(fmt::format("{}: grid sites: attribute '{}' is missing", file, name));
         const points::AttributeHandle<openvdb::Vec3f> position(leaf->constAttributeArray("P"));
-        const points::AttributeHandle<std::int32_t> id(leaf->constAttributeArray("id")), grain(leaf->constAttributeArray("grain"));
+        const points::AttributeHandle<std::int32_t> id(leaf->constAttributeArray("id")),
+            grain(leaf->constAttributeArray("grain"));
         const points::AttributeHandle<float> weight(leaf->constAttributeArray("weight"));
         const points::AttributeHandle<Quat> orient(leaf->constAttributeArray("orient"));
         for (auto index = leaf->beginIndexOn(); index; ++index) {
             const std::int32_t site_id = id.get(*index), grain_id = grain.get(*index);
             if (site_id < 1 || std::size_t(site_id) > count || grain_id < 0 || std::size_t(grain_id) > num_grains)
-                throw InputError(fmt::format("{}: grid sites: site {} of {} in grain {} of {} is out of range", file, site_id, count,
-                                             grain_id, num_grains));
+                throw InputError(fmt::format("{}: grid sites: site {} of {} in grain {} of {} is out of range", file, site_id,
+                                             count, grain_id, num_grains));
             Site& site = asset.sites[std::size_t(site_id) - 1];
             site.position_mm = grid.indexToWorld(openvdb::Vec3d(position.get(*index)) + index.getCoord().asVec3d());
             site.weight_mm = weight.get(*index);
@@ -266,12 +275,13 @@ void draw_orientations(OpalAsset& asset, std::size_t num_grains, std::uint64_t s
 void require_valid_shape(const openvdb::FloatGrid& shape, const std::string& file) {
     if (shape.getGridClass() != openvdb::GRID_LEVEL_SET)
         throw InputError(fmt::format("{}: grid shape: not marked as a level set", file));
-    if (!(shape.background() > 0.0f)) throw InputError(fmt::format("{}: grid shape: its background must be positive (outside)", file));
+    if (!(shape.background() > 0.0f))
+        throw InputError(fmt::format("{}: grid shape: its background must be positive (outside)", file));
     bool inside = false;
     for (auto value = shape.cbeginValueOn(); value; ++value) {
         if (!std::isfinite(*value))
-            throw InputError(fmt::format("{}: grid shape: voxel [{}, {}, {}] holds {}", file, value.getCoord().x(), value.getCoord().y(),
-                                         value.getCoord().z(), *value));
+            throw InputError(fmt::format("{}: grid shape: voxel [{}, {}, {}] holds {}", file, value.getCoord().x(),
+                                         value.getCoord().y(), value.getCoord().z(), *value));
         inside = inside || *value < 0.0f;
     }
     if (!inside) throw InputError(fmt::format("{}: grid shape: has no inside (no negative values)", file));
@@ -295,15 +305,16 @@ OpalAsset checked_asset(const RawOpalFile& raw, const std::string& file, const R
     if (reader.has(metadata_keys::schema_version)) {
         asset.schema_version = reader.integer32(metadata_keys::schema_version);
         if (asset.schema_version < 1 || asset.schema_version > opal_schema_version)
-            throw InputError(fmt::format("{}: opal schema {} is not known; this program reads 1 to {}", file, asset.schema_version,
-                                         opal_schema_version));
+            throw InputError(fmt::format("{}: opal schema {} is not known; this program reads 1 to {}", file,
+                                         asset.schema_version, opal_schema_version));
         asset.constants = read_constants(reader, file);
         asset.recipe_toml = reader.text(metadata_keys::recipe);
         asset.program_version = reader.text(metadata_keys::program_version);
         asset.seed = static_cast<std::uint64_t>(reader.integer64(metadata_keys::seed));
         const std::int64_t stated = reader.integer64(metadata_keys::num_grains);
         if (stated < std::int64_t(largest_id) || stated > INT32_MAX)
-            throw InputError(fmt::format("{}: grid grain_id holds id {}, but the file states {} grains", file, largest_id, stated));
+            throw InputError(
+                fmt::format("{}: grid grain_id holds id {}, but the file states {} grains", file, largest_id, stated));
         num_grains = std::size_t(stated);
     } else {
         asset.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.25);
@@ -326,14 +337,17 @@ OpalAsset checked_asset(const RawOpalFile& raw, const std::string& file, const R
         draw_orientations(asset, num_grains, asset.seed, false);
     } else {
         draw_orientations(asset, num_grains, options.orientation_seed, true);
-        notices.push_back(fmt::format("no sites: the {} grains' orientations were drawn from seed {}", num_grains, options.orientation_seed));
+        notices.push_back(
+            fmt::format("no sites: the {} grains' orientations were drawn from seed {}", num_grains, options.orientation_seed));
     }
     return asset;
 }
 
 }  // namespace
 
-void initialize_openvdb() { openvdb::initialize(); }
+void initialize_openvdb() {
+    openvdb::initialize();
+}
 
 openvdb::math::Quat<float> random_orientation(std::uint64_t seed, bool foreign, std::uint64_t grain) {
     const RandomStream stream = foreign ? RandomStream::foreign_orientations : RandomStream::grain_orientations;

@@ -24,8 +24,8 @@ inline constexpr const char* sites = "sites";
 /// One site of the tessellation.
 struct Site {
     openvdb::Vec3d position_mm;
-    float weight_mm = 0.0f;     ///< additive weight w_i; larger starts to grow earlier
-    std::int32_t grain = 0;     ///< grain it belongs to, from 1; 0 for a hidden site, which owns nothing
+    float weight_mm = 0.0f;  ///< additive weight w_i; larger starts to grow earlier
+    std::int32_t grain = 0;  ///< grain it belongs to, from 1; 0 for a hidden site, which owns nothing
 };
 
 /// Everything about an opal that does not vary from place to place.
@@ -58,8 +58,8 @@ struct OpalAsset {
 };
 
 /// Writes the asset atomically: grids grain_id, shape, sites (in this order, points last), blosc-compressed where available, with
-/// schema version, units and full provenance as file metadata. The content depends on the asset alone. Throws InputError where the
-/// output cannot be created, SystemError where writing fails (full disk).
+/// schema version, units and full provenance as file metadata. The content depends on the asset alone. Throws InputError where
+/// the output cannot be created, SystemError where writing fails (full disk).
 void write_opal_asset(const OpalAsset& asset, const std::filesystem::path& path);
 
 struct ReadOpalOptions {
@@ -68,9 +68,9 @@ struct ReadOpalOptions {
 };
 
 /// Reads and validates an opal .vdb. A foreign file with only `grain_id` (int, or float from a client that has no ints) reads
-/// too: orientations are then drawn from the stated seed, the shape is made from the labelled voxels, constants are the defaults; each
-/// such step appends a line to `notices`. Throws InputError for missing, truncated or foreign files, no grain_id, ids below 0,
-/// broken metadata, schemas newer than ours.
+/// too: orientations are then drawn from the stated seed, the shape is made from the labelled voxels, constants are the defaults;
+/// each such step appends a line to `notices`. Throws InputError for missing, truncated or foreign files, no grain_id, ids below
+/// 0, broken metadata, schemas newer than ours.
 OpalAsset read_opal_asset(const std::filesystem::path& path, const ReadOpalOptions& options, std::vector<std::string>& notices);
 
 /// What `opal-model check` finds: errors make a file unusable, advice does not.
@@ -79,8 +79,8 @@ struct AssetCheck {
     std::vector<std::string> advice;
 };
 
-/// Checks a file against the schema: grids, types, transforms, ids against sites and grains, level set class and sign, a leaf that
-/// Blender needs, provenance. Throws InputError only where the file cannot be opened as a .vdb.
+/// Checks a file against the schema: grids, types, transforms, ids against sites and grains, level set class and sign, a leaf
+/// that Blender needs, provenance. Throws InputError only where the file cannot be opened as a .vdb.
 AssetCheck check_opal_asset(const std::filesystem::path& path);
 
 /// Makes OpenVDB's grid and attribute types known; called by every function here.

@@ -10,8 +10,8 @@
 #endif
 
 /// Counter-based random numbers: every number is a pure function of (seed, stream, index, dimension), so results do not depend on
-/// threads, order or earlier draws. Generator: Philox4x32-10, Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011.
-/// Shared by the modeler and by both backends of the renderer.
+/// threads, order or earlier draws. Generator: Philox4x32-10, Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC
+/// 2011. Shared by the modeler and by both backends of the renderer.
 namespace opal {
 
 struct RandomBlock {
@@ -34,7 +34,9 @@ OPAL_RANDOM_HD inline RandomBlock philox4x32(RandomBlock counter, std::uint32_t 
 }
 
 /// Uniform in [0, 1): the top 24 bits, so that the float is exact and never rounds to 1.
-OPAL_RANDOM_HD inline float uniform_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+OPAL_RANDOM_HD inline float uniform_float(std::uint32_t bits) {
+    return float(bits >> 8) * 0x1p-24f;
+}
 
 /// Uniform in [0, 1) with 53 random bits.
 OPAL_RANDOM_HD inline double uniform_double(std::uint32_t high, std::uint32_t low) {
@@ -53,7 +55,8 @@ enum class RandomStream : std::uint32_t {
 };
 
 /// Block of four words for (seed, stream, index, block); the dimension is 4 * block + word.
-OPAL_RANDOM_HD inline RandomBlock random_block(std::uint64_t seed, RandomStream stream, std::uint64_t index, std::uint32_t block) {
+OPAL_RANDOM_HD inline RandomBlock random_block(std::uint64_t seed, RandomStream stream, std::uint64_t index,
+                                               std::uint32_t block) {
     return philox4x32({{std::uint32_t(index), std::uint32_t(index >> 32), block, std::uint32_t(stream)}}, std::uint32_t(seed),
                       std::uint32_t(seed >> 32));
 }

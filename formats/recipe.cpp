@@ -46,7 +46,8 @@ ShapeRecipe read_shape(TomlSection section) {
         }
         if (shape.kind == ShapeKind::cabochon) {
             const double smallest = std::min({shape.size_mm[0], shape.size_mm[1], shape.size_mm[2]});
-            shape.girdle_mm = section.number("girdle_mm", std::round(0.15e6 * smallest) * 1.0e-6, NumberRange{0.0, 0.9 * smallest, true});
+            shape.girdle_mm =
+                section.number("girdle_mm", std::round(0.15e6 * smallest) * 1.0e-6, NumberRange{0.0, 0.9 * smallest, true});
         }
     }
     section.finish();
@@ -92,10 +93,12 @@ GrainsRecipe read_grains(TomlSection section, int& resolution) {
 
 CrystalRecipe read_crystal(TomlSection section) {
     CrystalRecipe crystal;
-    crystal.sphere_diameter_nm = section.number("sphere_diameter_nm", crystal.sphere_diameter_nm, NumberRange::between(50.0, 1000.0));
+    crystal.sphere_diameter_nm =
+        section.number("sphere_diameter_nm", crystal.sphere_diameter_nm, NumberRange::between(50.0, 1000.0));
     crystal.n_sphere = section.number("n_sphere", crystal.n_sphere, NumberRange::between(1.0, 4.0));
     crystal.n_medium = section.number("n_medium", crystal.n_medium, NumberRange::between(1.0, 4.0));
-    crystal.coherence_length_um = section.number("coherence_length_um", crystal.coherence_length_um, NumberRange::between(0.5, 1.0e4));
+    crystal.coherence_length_um =
+        section.number("coherence_length_um", crystal.coherence_length_um, NumberRange::between(0.5, 1.0e4));
     section.finish();
     return crystal;
 }
@@ -154,7 +157,8 @@ std::string recipe_to_toml(const Recipe& recipe) {
     text += fmt::format("\n[grains]\nnum_sites = {}\n", grains.num_sites);
     text += recipe.resolution > 0 ? fmt::format("resolution = {}\n", recipe.resolution)
                                   : fmt::format("voxel_size_mm = {}\n", real(grains.voxel_size_mm));
-    text += fmt::format("seed = {}\ntessellation = {}\n", grains.seed, toml_quoted(name_from(tessellation_names, grains.tessellation)));
+    text += fmt::format("seed = {}\ntessellation = {}\n", grains.seed,
+                        toml_quoted(name_from(tessellation_names, grains.tessellation)));
     text += fmt::format("weight = {{ kind = {}, amplitude = {}, scale_mm = {}, octaves = {} }}\n",
                         toml_quoted(name_from(weight_names, grains.weight.kind)), real(grains.weight.amplitude),
                         real(grains.weight.scale_mm), grains.weight.octaves);
@@ -171,8 +175,8 @@ std::string recipe_to_toml(const Recipe& recipe) {
     text += fmt::format(
         "\n[base_color]\nabsorber = {}\nsigma_a_per_mm = {}\nsigma_s_rayleigh_400nm_per_mm = {}\nsigma_s_mie_per_mm = {}\n"
         "mie_asymmetry = {}\n",
-        toml_quoted(std::filesystem::path(color.absorber).filename().string()), real(color.sigma_a_per_mm), real(color.sigma_s_rayleigh_400nm_per_mm),
-        real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry));
+        toml_quoted(std::filesystem::path(color.absorber).filename().string()), real(color.sigma_a_per_mm),
+        real(color.sigma_s_rayleigh_400nm_per_mm), real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry));
     return text;
 }
 

@@ -53,7 +53,7 @@ struct CrystalRecipe {
 
 struct BaseColorRecipe {
     std::string absorber = "carbon";  ///< a built-in name, or a .csv's path
-    double sigma_a_per_mm = 0.25;  ///< at 550 nm
+    double sigma_a_per_mm = 0.25;     ///< at 550 nm
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
     double sigma_s_mie_per_mm = 0.0;
     double mie_asymmetry = 0.8;  ///< Henyey-Greenstein g of the Mie-like part
@@ -65,7 +65,7 @@ struct Recipe {
     GrainsRecipe grains;
     CrystalRecipe crystal;
     BaseColorRecipe base_color;
-    int resolution = 0;                 ///< voxels along the longest side where the recipe asks for that; else 0
+    int resolution = 0;  ///< voxels along the longest side where the recipe asks for that; else 0
 };
 
 /// Reads and validates. Throws InputError located at file:line:column.

@@ -19,6 +19,8 @@ nlohmann::json version_report() {
     return {{"opal", OPAL_VERSION_STRING}, {"openvdb", OPENVDB_LIBRARY_VERSION_STRING}, {"compiler", __VERSION__}};
 }
 
-void write_report(const std::filesystem::path& path, const nlohmann::json& report) { write_text_file(path, report.dump(2) + "\n"); }
+void write_report(const std::filesystem::path& path, const nlohmann::json& report) {
+    write_text_file(path, report.dump(2) + "\n");
+}
 
 }  // namespace opal

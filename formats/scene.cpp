@@ -163,7 +163,9 @@ SceneDescription read_document(const TomlDocument& document) {
     return scene;
 }
 
-std::string vector_text(const std::array<double, 3>& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
+std::string vector_text(const std::array<double, 3>& v) {
+    return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
+}
 
 std::string object_to_toml(const ObjectDescription& object) {
     std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);

@@ -18,8 +18,8 @@ namespace opal {
 double SampledSpectrum::at(double wavelength) const {
     if (wavelength <= wavelength_nm.front()) return value.front();
     if (wavelength >= wavelength_nm.back()) return value.back();
-    const std::size_t i =
-        static_cast<std::size_t>(std::upper_bound(wavelength_nm.begin(), wavelength_nm.end(), wavelength) - wavelength_nm.begin());
+    const std::size_t i = static_cast<std::size_t>(std::upper_bound(wavelength_nm.begin(), wavelength_nm.end(), wavelength) -
+                                                   wavelength_nm.begin());
     const double t = (wavelength - wavelength_nm[i - 1]) / (wavelength_nm[i] - wavelength_nm[i - 1]);
     return value[i - 1] + t * (value[i] - value[i - 1]);
 }

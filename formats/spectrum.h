@@ -29,7 +29,8 @@ SampledSpectrum builtin_absorber(const std::string& name);
 /// missing files, wrong numbers, negative values and wavelengths that do not increase.
 SampledSpectrum read_spectrum_csv(const std::filesystem::path& path);
 
-/// A built-in name or the path of a .csv, scaled to `value_at_550nm`. A spectrum that is zero at 550 nm cannot be scaled: InputError.
+/// A built-in name or the path of a .csv, scaled to `value_at_550nm`. A spectrum that is zero at 550 nm cannot be scaled:
+/// InputError.
 SampledSpectrum absorber_spectrum(const std::string& name_or_path, double value_at_550nm);
 
 /// "360:0.1 370:0.2 ...", the form in which a spectrum travels in .vdb metadata, and back.

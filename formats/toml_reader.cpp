@@ -25,13 +25,20 @@ std::string describe_location(const toml::source_region& source, const std::stri
 
 std::string describe_type(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table: return "a table";
-        case toml::node_type::array: return "an array";
-        case toml::node_type::string: return "a string";
-        case toml::node_type::integer: return "an integer";
-        case toml::node_type::floating_point: return "a number";
-        case toml::node_type::boolean: return "a boolean";
-        default: return "a date or time";
+        case toml::node_type::table:
+            return "a table";
+        case toml::node_type::array:
+            return "an array";
+        case toml::node_type::string:
+            return "a string";
+        case toml::node_type::integer:
+            return "an integer";
+        case toml::node_type::floating_point:
+            return "a number";
+        case toml::node_type::boolean:
+            return "a boolean";
+        default:
+            return "a date or time";
     }
 }
 
@@ -39,7 +46,8 @@ std::string read_whole_file(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw InputError(fmt::format("{}: no such file", path.string()));
     if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(fmt::format("{}: is {}, not a file", path.string(), std::filesystem::is_directory(path, error) ? "a folder" : "a device"));
+        throw InputError(fmt::format("{}: is {}, not a file", path.string(),
+                                     std::filesystem::is_directory(path, error) ? "a folder" : "a device"));
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
@@ -48,7 +56,8 @@ std::string read_whole_file(const std::filesystem::path& path) {
 }
 
 bool is_array_index(std::string_view text) {
-    return !text.empty() && text.size() < 10 && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return !text.empty() && text.size() < 10 &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 /// The value of an override as a one-key document, so that its node carries the override's own text as its source.
@@ -97,7 +106,8 @@ void apply_override(toml::table& root, const std::string& assignment) {
 
 void erase_key(toml::table& root, const std::string& dotted_key) {
     const std::size_t dot = dotted_key.rfind('.');
-    const toml::node_view<toml::node> parent = dot == std::string::npos ? toml::node_view<toml::node>(root) : root.at_path(dotted_key.substr(0, dot));
+    const toml::node_view<toml::node> parent =
+        dot == std::string::npos ? toml::node_view<toml::node>(root) : root.at_path(dotted_key.substr(0, dot));
     if (toml::table* table = parent.as_table()) table->erase(dotted_key.substr(dot == std::string::npos ? 0 : dot + 1));
 }
 
@@ -118,7 +128,9 @@ std::string NumberRange::describe() const {
 TomlSection::TomlSection(const toml::table* table, std::string name, std::string file)
     : table_(table), name_(std::move(name)), file_(std::move(file)) {}
 
-std::string TomlSection::full_name(const std::string& key) const { return name_.empty() ? key : name_ + "." + key; }
+std::string TomlSection::full_name(const std::string& key) const {
+    return name_.empty() ? key : name_ + "." + key;
+}
 
 std::string TomlSection::location_of(const std::string& key) const {
     if (!table_) return file_;
@@ -135,7 +147,9 @@ const toml::node* TomlSection::find(const std::string& key) {
     return table_ ? table_->get(key) : nullptr;
 }
 
-bool TomlSection::has(const std::string& key) const { return table_ && table_->contains(key); }
+bool TomlSection::has(const std::string& key) const {
+    return table_ && table_->contains(key);
+}
 
 double TomlSection::number(const std::string& key, double fallback, const NumberRange& range) {
     const toml::node* node = find(key);
@@ -149,8 +163,7 @@ double TomlSection::number(const std::string& key, double fallback, const Number
 std::int64_t TomlSection::integer(const std::string& key, std::int64_t fallback, std::int64_t min, std::int64_t max) {
     const toml::node* node = find(key);
     if (!node) return fallback;
-    if (!node->is_integer())
-        fail(key, fmt::format("expected an integer ({} to {}), found {}", min, max, describe_type(*node)));
+    if (!node->is_integer()) fail(key, fmt::format("expected an integer ({} to {}), found {}", min, max, describe_type(*node)));
     const std::int64_t value = node->value<std::int64_t>().value();
     if (value < min || value > max) fail(key, fmt::format("{} is out of range; allowed: {} to {}", value, min, max));
     return value;
@@ -177,8 +190,8 @@ std::string TomlSection::choice(const std::string& key, const std::string& fallb
     return value;
 }
 
-std::array<double, 3> TomlSection::vector3(const std::string& key, const std::array<double, 3>& fallback, const NumberRange& range,
-                                           bool scalar_allowed) {
+std::array<double, 3> TomlSection::vector3(const std::string& key, const std::array<double, 3>& fallback,
+                                           const NumberRange& range, bool scalar_allowed) {
     const toml::node* node = find(key);
     if (!node) return fallback;
     const auto checked = [&](const toml::node& element) {
@@ -256,7 +269,8 @@ void TomlSection::finish() const {
     }
 }
 
-TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides, const ExclusiveKeys& exclusive)
+TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                           const ExclusiveKeys& exclusive)
     : TomlDocument(read_whole_file(file), file.string(), overrides, exclusive) {}
 
 TomlDocument::TomlDocument(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <toml++/toml.h>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 namespace opal {
@@ -42,7 +42,8 @@ class TomlSection {
     std::array<double, 3> vector3(const std::string& key, const std::array<double, 3>& fallback, const NumberRange& range,
                                   bool scalar_allowed = false);
     std::vector<std::string> choices(const std::string& key, const std::vector<std::string>& allowed);
-    /// A file's path; a relative one is relative to the file that holds the key (to the working folder for --set). Empty if absent.
+    /// A file's path; a relative one is relative to the file that holds the key (to the working folder for --set). Empty if
+    /// absent.
     std::filesystem::path path(const std::string& key);
     /// A sub-table; an absent one reads as empty.
     TomlSection section(const std::string& key);
@@ -68,12 +69,13 @@ class TomlSection {
 /// Pairs of keys of which a file may give one.
 using ExclusiveKeys = std::vector<std::pair<std::string, std::string>>;
 
-/// A parsed file with `--set key.path=value` overrides applied (value in TOML syntax; a bare word is a string; elements of an array
-/// of tables are named by number: object.0.file=...).
+/// A parsed file with `--set key.path=value` overrides applied (value in TOML syntax; a bare word is a string; elements of an
+/// array of tables are named by number: object.0.file=...).
 class TomlDocument {
   public:
     /// An override of one of two `exclusive` keys takes the place of the other.
-    TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides, const ExclusiveKeys& exclusive = {});
+    TomlDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                 const ExclusiveKeys& exclusive = {});
     /// From text rather than a file; `name` stands for the file in messages.
     TomlDocument(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                  const ExclusiveKeys& exclusive = {});

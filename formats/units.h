@@ -15,7 +15,11 @@ inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double wavelength_min_nm = 360.0;
 inline constexpr double wavelength_max_nm = 830.0;
 
-constexpr double rad_from_deg(double angle_deg) { return angle_deg * (pi / 180.0); }
-constexpr double deg_from_rad(double angle_rad) { return angle_rad * (180.0 / pi); }
+constexpr double rad_from_deg(double angle_deg) {
+    return angle_deg * (pi / 180.0);
+}
+constexpr double deg_from_rad(double angle_rad) {
+    return angle_rad * (180.0 / pi);
+}
 
 }  // namespace opal::units

@@ -79,8 +79,7 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.n_medium = recipe.crystal.n_medium;
     constants.coherence_length_um = recipe.crystal.coherence_length_um;
     constants.absorber = recipe.base_color.absorber;
-    constants.sigma_a_per_mm =
-        absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm);
+    constants.sigma_a_per_mm = absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm);
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;

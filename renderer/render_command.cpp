@@ -29,7 +29,8 @@ struct RenderOptions {
     int threads = 0;
     std::optional<std::int64_t> seed;
     std::string device = "auto";
-    /// The command as it decides the picture: without the output's name, threads and statistics, so that the same picture has the same bytes.
+    /// The command as it decides the picture: without the output's name, threads and statistics, so that the same picture has the
+    /// same bytes.
     std::string command() const {
         std::string text = "opal-render " + scene_file.string();
         for (const std::string& assignment : overrides) text += " --set " + assignment;
@@ -69,12 +70,15 @@ std::optional<int> parse_options(int argc, char** argv, RenderOptions& options) 
     app.set_version_flag("--version", std::string("opal-render ") + OPAL_VERSION_STRING);
     app.add_option("SCENE", options.scene_file, "scene.toml")->required();
     app.add_option("-o,--output", options.output, "picture to write (.exr); a .png appears beside it")->required();
-    app.add_option("--set", options.overrides, "override a key of the scene: key.path=value (TOML); repeatable")->take_all()->allow_extra_args(false);
+    app.add_option("--set", options.overrides, "override a key of the scene: key.path=value (TOML); repeatable")
+        ->take_all()
+        ->allow_extra_args(false);
     app.add_option("--spp", options.samples, "samples per pixel, instead of render.samples")->check(CLI::Range(1, 1 << 24));
     app.add_option("--time", options.time, "stop after this long: seconds, or 90s, 5m, 2h");
     app.add_option("--threads", options.threads, "worker threads (default: all cores)")->check(CLI::Range(1, 4096));
     app.add_option("--seed", options.seed, "random seed, instead of render.seed")->check(CLI::Range(std::int64_t(0), INT64_MAX));
-    app.add_option("--device", options.device, "auto, cpu or cuda (this build: cpu)")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+    app.add_option("--device", options.device, "auto, cpu or cuda (this build: cpu)")
+        ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
     app.add_option("--stats", options.stats_file, "write statistics as JSON");
     try {
         app.parse(argc, argv);
@@ -84,7 +88,8 @@ std::optional<int> parse_options(int argc, char** argv, RenderOptions& options) 
         throw InputError(fmt::format("{} (opal-render --help shows the options)", error.what()));
     }
     if (options.device == "cuda") throw InputError("--device cuda: this build has no CUDA backend; allowed: auto, cpu");
-    if (options.output.extension() != ".exr") throw InputError(fmt::format("output {}: the name must end in .exr", options.output.string()));
+    if (options.output.extension() != ".exr")
+        throw InputError(fmt::format("output {}: the name must end in .exr", options.output.string()));
     if (options.stats_file == options.output) throw InputError("--stats: names the same file as the picture");
     return std::nullopt;
 }
@@ -96,8 +101,8 @@ nlohmann::json spectrum_report(const SpectrumTotals& totals, const SpectrumTable
         // Mean of the white over the bin, so that a white furnace reports 1.
         double white = 0.0;
         int count = 0;
-        for (double wavelength = std::max(360.0, bin_centre_nm(bin) - 5.0); wavelength <= std::min(830.0, bin_centre_nm(bin) + 5.0);
-             wavelength += 0.25, ++count)
+        for (double wavelength = std::max(360.0, bin_centre_nm(bin) - 5.0);
+             wavelength <= std::min(830.0, bin_centre_nm(bin) + 5.0); wavelength += 0.25, ++count)
             white += double(table_at(tables.white, float(wavelength)));
         white /= count;
         const double mean = totals.radiance[bin] / n;
@@ -172,7 +177,8 @@ int render_command(int argc, char** argv) {
     RenderOutcome outcome;
     {
         Progress progress("rendering");
-        outcome = render_cpu(host, intersector, {scene.render.samples, time_limit_s}, film, [&](double f) { progress.update(f); });
+        outcome =
+            render_cpu(host, intersector, {scene.render.samples, time_limit_s}, film, [&](double f) { progress.update(f); });
     }
     if (film.total_samples() == 0) throw Interrupted();
 

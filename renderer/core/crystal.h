@@ -10,9 +10,9 @@ inline constexpr double fcc_filling = 0.74048048969306104;  ///< pi / (3 sqrt 2)
 
 /// A pair of reciprocal vectors +G and -G: one family of lattice planes. No factor 2 pi: |G| = sqrt(h^2+k^2+l^2) / a.
 struct PlanePair {
-    Vec3 normal;            ///< unit G, lattice frame (cubic axes)
-    float g_per_nm;         ///< |G|
-    float epsilon;          ///< |Fourier coefficient of the permittivity| for this G
+    Vec3 normal;     ///< unit G, lattice frame (cubic axes)
+    float g_per_nm;  ///< |G|
+    float epsilon;   ///< |Fourier coefficient of the permittivity| for this G
     int h, k, l;
 };
 
@@ -40,8 +40,8 @@ inline double permittivity_coefficient(const CrystalParameters& crystal, double 
     return contrast * fcc_filling * 3.0 * (sin(x) - x * cos(x)) / (x * x * x);
 }
 
-/// All pairs with |G| <= 2 n_eff / lambda_min, shortest first (then by h, k, l), the first `capacity` of them. Returns how many lie
-/// inside; the limiting sphere then holds 2 * result + 1 points with the origin. fcc: h, k, l all even or all odd.
+/// All pairs with |G| <= 2 n_eff / lambda_min, shortest first (then by h, k, l), the first `capacity` of them. Returns how many
+/// lie inside; the limiting sphere then holds 2 * result + 1 points with the origin. fcc: h, k, l all even or all odd.
 inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_min_nm, PlanePair* pairs, int capacity) {
     const double edge_nm = 1.4142135623730951 * crystal.sphere_diameter_nm;
     const double g_max_per_nm = 2.0 * effective_index(crystal) / wavelength_min_nm;
@@ -64,7 +64,9 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
                         pairs[count] = {{float(h / root), float(k / root), float(l / root)},
                                         float(g_per_nm),
                                         float(fabs(permittivity_coefficient(crystal, g_per_nm))),
-                                        h, k, l};
+                                        h,
+                                        k,
+                                        l};
                     ++count;
                 }
             }
@@ -72,7 +74,9 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
 }
 
 /// Exact Bragg wavelength (vacuum nm) of planes with |G| met at cosine `cosine` to their normal.
-OPAL_HD inline float bragg_wavelength_nm(float n_eff, float cosine, float g_per_nm) { return 2.0f * n_eff * cosine / g_per_nm; }
+OPAL_HD inline float bragg_wavelength_nm(float n_eff, float cosine, float g_per_nm) {
+    return 2.0f * n_eff * cosine / g_per_nm;
+}
 
 /// Relative width of the stop band at normal incidence, |eps_G| / n_eff^2.
 inline double relative_stop_band_width(const CrystalParameters& crystal, double g_per_nm) {

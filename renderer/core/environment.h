@@ -5,8 +5,8 @@
 
 namespace opal {
 
-/// Light from infinity: a latitude-longitude picture of linear sRGB radiance (times D65), top row at +Z, with the tables that draw
-/// directions in proportion to it.
+/// Light from infinity: a latitude-longitude picture of linear sRGB radiance (times D65), top row at +Z, with the tables that
+/// draw directions in proportion to it.
 struct EnvironmentView {
     const Rgb* texels = nullptr;
     const float* row_cdf = nullptr;     ///< height + 1 values: which row
@@ -16,7 +16,9 @@ struct EnvironmentView {
     float rotation_rad = 0.0f;  ///< counter-clockwise about +Z
 };
 
-OPAL_HD inline float wrap_unit(float x) { return x - floorf(x); }
+OPAL_HD inline float wrap_unit(float x) {
+    return x - floorf(x);
+}
 
 /// Continuous texel coordinates of a direction: u in [0, 1) with longitude from +X counter-clockwise, v in [0, 1] from +Z down.
 OPAL_HD inline void environment_uv(const EnvironmentView& environment, Vec3 direction, float& u, float& v) {

@@ -63,9 +63,10 @@ class GrainWalk {
         const float exit = min_of(exit_x, min_of(exit_y, exit_z));
         distance = max_of(distance, exit);
         const Vec3 position = origin_ + distance * direction_;
-        voxel_ = {exit_x == exit ? entered_index(direction_.x, low_x, size) : clamped_index(position.x, low_x, size),
-                  exit_x != exit && exit_y == exit ? entered_index(direction_.y, low_y, size) : clamped_index(position.y, low_y, size),
-                  exit_x != exit && exit_y != exit ? entered_index(direction_.z, low_z, size) : clamped_index(position.z, low_z, size)};
+        voxel_ = {
+            exit_x == exit ? entered_index(direction_.x, low_x, size) : clamped_index(position.x, low_x, size),
+            exit_x != exit && exit_y == exit ? entered_index(direction_.y, low_y, size) : clamped_index(position.y, low_y, size),
+            exit_x != exit && exit_y != exit ? entered_index(direction_.z, low_z, size) : clamped_index(position.z, low_z, size)};
     }
 
     nanovdb::DefaultReadAccessor<int32_t> accessor_;

@@ -41,8 +41,8 @@ OPAL_HD inline LaneMedium lane_medium(const OpalView& opal, const PathWavelength
 
 /// Where inside the opal a path is.
 struct InteriorState {
-    int grain = 0;               ///< 0: not known yet
-    uint64_t tested_pairs = 0;   ///< families that already turned the path in this grain: the pile's formula holds their ping-pong
+    int grain = 0;              ///< 0: not known yet
+    uint64_t tested_pairs = 0;  ///< families that already turned the path in this grain: the pile's formula holds their ping-pong
 };
 
 enum class InteriorEventKind { surface, diffraction, scattering };
@@ -70,10 +70,12 @@ struct GrainOdds {
 };
 
 /// Mean thickness times a triangular factor in [0.5, 1.5]: the spread of block sizes washes out fringes that no real opal shows.
-OPAL_HD inline float draw_coherence_nm(float mean_nm, PathRandom& random) { return mean_nm * (0.5f + 0.5f * (random.next() + random.next())); }
+OPAL_HD inline float draw_coherence_nm(float mean_nm, PathRandom& random) {
+    return mean_nm * (0.5f + 0.5f * (random.next() + random.next()));
+}
 
-OPAL_HD inline void evaluate_grain(const OpalView& opal, const PathWavelengths& wavelengths, Vec3 lattice_direction, float chord_nm,
-                                   float coherence_nm, uint64_t tested_pairs, GrainOdds& result) {
+OPAL_HD inline void evaluate_grain(const OpalView& opal, const PathWavelengths& wavelengths, Vec3 lattice_direction,
+                                   float chord_nm, float coherence_nm, uint64_t tested_pairs, GrainOdds& result) {
     result.count = 0;
     float reflected[PileOdds::size] = {};
     for (int k = 0; k < opal.num_pairs; ++k) {
@@ -110,7 +112,8 @@ OPAL_HD inline Turn draw_turn(const GrainOdds& grain, PathRandom& random) {
     Turn turn;
     for (int i = 0; i < grain.count; ++i) {
         const float reflectance = grain.odds[i].reflectance(0);
-        if (reflectance > 0.0f) turn.index = i;  // rounding can carry u past the last family; never onto one that does not reflect
+        if (reflectance > 0.0f)
+            turn.index = i;  // rounding can carry u past the last family; never onto one that does not reflect
         if (u < reflectance) break;
         u -= reflectance;
     }
@@ -141,13 +144,14 @@ OPAL_HD inline Vec3 scatter_direction(const OpalView& opal, const LaneMedium& me
 }
 
 /// Follows `ray` (world, inside the opal) until it turns, scatters or reaches the surface `surface_mm` ahead.
-OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWavelengths& wavelengths, const LaneMedium& medium, Ray ray,
-                                            float surface_mm, InteriorState& state, LaneWeights& weights, PathRandom& random,
-                                            PathCounters& counters) {
+OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWavelengths& wavelengths, const LaneMedium& medium,
+                                            Ray ray, float surface_mm, InteriorState& state, LaneWeights& weights,
+                                            PathRandom& random, PathCounters& counters) {
     const float sigma_s = medium.sigma_s(0);
     const float scatter_mm = sigma_s > 0.0f ? -logf(1.0f - random.next()) / sigma_s : 3.0e38f;
     const float end_mm = min_of(surface_mm, scatter_mm);
-    InteriorEvent event{scatter_mm < surface_mm ? InteriorEventKind::scattering : InteriorEventKind::surface, end_mm, ray.direction};
+    InteriorEvent event{scatter_mm < surface_mm ? InteriorEventKind::scattering : InteriorEventKind::surface, end_mm,
+                        ray.direction};
 
     if (opal.diffraction && opal.num_pairs > 0) {
         const float scale = opal.world_from_object.scale;
@@ -164,8 +168,8 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                 ++counters.grain_crossings;
                 const Quaternion orientation = opal.orientations[state.grain - 1];
                 const Vec3 lattice_direction = orientation.conjugate().rotate(direction);
-                evaluate_grain(opal, wavelengths, lattice_direction, chord_mm * 1.0e6f, draw_coherence_nm(opal.coherence_nm, random),
-                               state.tested_pairs, grain);
+                evaluate_grain(opal, wavelengths, lattice_direction, chord_mm * 1.0e6f,
+                               draw_coherence_nm(opal.coherence_nm, random), state.tested_pairs, grain);
                 if (grain.scale.v[0] < 1.0f) ++counters.renormalized_crossings;
                 const Turn turn = draw_turn(grain, random);
                 const float turn_mm = turn.index >= 0 ? entered * scale + turn.fraction * chord_mm : 3.0e38f;
@@ -175,7 +179,8 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                     for (int i = 1; i < weights.count; ++i)
                         weights.ratio.v[i] *= grain.scale.v[i] * odds.turning_density(i, turn.fraction) / hero;
                     const int k = grain.pair[turn.index];
-                    const Vec3 normal = opal.world_from_object.world_from_local_direction(orientation.rotate(opal.pairs[k].normal));
+                    const Vec3 normal =
+                        opal.world_from_object.world_from_local_direction(orientation.rotate(opal.pairs[k].normal));
                     state.tested_pairs |= uint64_t(1) << k;
                     ++counters.diffractions;
                     attenuate(medium, turn_mm, weights);

@@ -29,9 +29,9 @@ class PathRandom {
     uint32_t next_block_;
 };
 
-/// Low-discrepancy numbers for what all samples of a pixel share: the additive recurrence frac(scramble + sample * alpha) in 32-bit
-/// fixed point, with a scramble per pixel and dimension. Any prefix of the samples is well spread, so no total has to be known.
-/// Steps: the golden ratio for the wavelength; the plastic number's powers for the pixel position (Roberts 2018).
+/// Low-discrepancy numbers for what all samples of a pixel share: the additive recurrence frac(scramble + sample * alpha) in
+/// 32-bit fixed point, with a scramble per pixel and dimension. Any prefix of the samples is well spread, so no total has to be
+/// known. Steps: the golden ratio for the wavelength; the plastic number's powers for the pixel position (Roberts 2018).
 class PixelSequence {
   public:
     OPAL_HD PixelSequence(uint64_t seed, uint32_t pixel, uint32_t sample)

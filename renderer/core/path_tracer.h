@@ -5,7 +5,8 @@
 #include "renderer/core/scene_view.h"
 #include "renderer/core/surface_scattering.h"
 
-/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&): Embree on the CPU.
+/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&): Embree on the
+/// CPU.
 namespace opal {
 
 /// What one path found, per lane, before the division by the lane's wavelength density.
@@ -34,16 +35,21 @@ struct LaneSpectra {
 template <class Intersector>
 class PathTracer {
   public:
-    OPAL_HD PathTracer(const SceneView& scene, const Intersector& intersector, const PathWavelengths& wavelengths, PathRandom& random,
-                       PathCounters& counters)
-        : scene_(scene), intersector_(intersector), wavelengths_(wavelengths), random_(random), counters_(counters),
+    OPAL_HD PathTracer(const SceneView& scene, const Intersector& intersector, const PathWavelengths& wavelengths,
+                       PathRandom& random, PathCounters& counters)
+        : scene_(scene),
+          intersector_(intersector),
+          wavelengths_(wavelengths),
+          random_(random),
+          counters_(counters),
           spectra_(scene.spectra, wavelengths) {
         weights_.count = wavelengths.count;
         if (scene.opal.present) medium_ = lane_medium(scene.opal, wavelengths);
     }
 
-    /// Traces one path from the camera. Where it first meets the opal from outside it goes on both ways, each weighted by its Fresnel
-    /// factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the noise.
+    /// Traces one path from the camera. Where it first meets the opal from outside it goes on both ways, each weighted by its
+    /// Fresnel factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the
+    /// noise.
     OPAL_HD PathResult trace(const Ray& camera) {
         follow(camera, 0);
         if (reflection_pending_) {
@@ -163,7 +169,8 @@ class PathTracer {
             result_.radiance.v[i] += weight * contribution.v[i] * spectra_.radiance(radiance, i);
     }
 
-    /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios stay.
+    /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios
+    /// stay.
     OPAL_HD bool survives_roulette(int bounce) {
         if (bounce < 4) return true;
         const Lanes contribution = weights_.contribution();

@@ -7,7 +7,9 @@
 namespace opal {
 
 /// Rayleigh phase function 3/(16 pi) (1 + cos^2).
-OPAL_HD inline float rayleigh_phase(float cosine) { return (3.0f / (16.0f * pi_f)) * (1.0f + cosine * cosine); }
+OPAL_HD inline float rayleigh_phase(float cosine) {
+    return (3.0f / (16.0f * pi_f)) * (1.0f + cosine * cosine);
+}
 
 /// Exact inversion of Rayleigh's cumulative distribution (Frisvad 2011, "Importance sampling the Rayleigh phase function"):
 /// with v = 2 (2 u - 1) the cosine solves c^3 + 3 c = 2 v, whose real root is q - 1/q with q^3 = v + sqrt(v^2 + 1).

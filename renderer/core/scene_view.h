@@ -32,8 +32,8 @@ struct OpalView {
     float n_eff = 1.0f;
     PlanePair pairs[max_tested_pairs];
     int num_pairs = 0;
-    float coherence_nm = 25000.0f;            ///< mean thickness of a coherent block
-    const float* sigma_a_per_mm = nullptr;    ///< 1 nm table
+    float coherence_nm = 25000.0f;          ///< mean thickness of a coherent block
+    const float* sigma_a_per_mm = nullptr;  ///< 1 nm table
     float sigma_s_rayleigh_400nm_per_mm = 0.0f;
     float sigma_s_mie_per_mm = 0.0f;
     float mie_asymmetry = 0.0f;

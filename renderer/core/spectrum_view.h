@@ -29,11 +29,11 @@ struct Rgb {
 
 /// Tables over the wavelength, 360 to 830 nm in steps of 1 nm.
 struct SpectrumTables {
-    const Vec3* observer = nullptr;  ///< CIE 1931 colour matching functions over the integral of y
-    const float* white = nullptr;    ///< D65, scaled so that Y = 1
-    const Vec3* rgb_basis = nullptr; ///< reflectances of the sRGB primaries
-    const float* pdf = nullptr;      ///< probability density of drawn wavelengths, 1/nm, constant within each nm
-    const float* cdf = nullptr;      ///< its integral, 0 at 360 nm, 1 at 830 nm
+    const Vec3* observer = nullptr;   ///< CIE 1931 colour matching functions over the integral of y
+    const float* white = nullptr;     ///< D65, scaled so that Y = 1
+    const Vec3* rgb_basis = nullptr;  ///< reflectances of the sRGB primaries
+    const float* pdf = nullptr;       ///< probability density of drawn wavelengths, 1/nm, constant within each nm
+    const float* cdf = nullptr;       ///< its integral, 0 at 360 nm, 1 at 830 nm
 };
 
 /// Linear interpolation in a 1 nm table; wavelengths are inside the range by construction.

@@ -6,9 +6,9 @@
 
 namespace opal {
 
-/// Continues a ray at the smooth surface of the opal: reflects with the Fresnel probability, else refracts, so that the throughput
-/// stays 1. Where an interpolated normal would send the ray through the wrong side of the face, the face's own normal is used.
-/// `u` is uniform in [0, 1). Returns the new unit direction.
+/// Continues a ray at the smooth surface of the opal: reflects with the Fresnel probability, else refracts, so that the
+/// throughput stays 1. Where an interpolated normal would send the ray through the wrong side of the face, the face's own normal
+/// is used. `u` is uniform in [0, 1). Returns the new unit direction.
 OPAL_HD inline Vec3 scatter_dielectric(Vec3 direction, const Surface& surface, float n_eff, float u) {
     const bool entering = dot(direction, surface.geometric_normal) < 0.0f;
     const float eta = entering ? n_eff : 1.0f / n_eff;

@@ -6,13 +6,15 @@
 /// Two-beam dynamical diffraction by one family of lattice planes.
 namespace opal {
 
-/// sin^2(x) for any |x| up to some thousands: reduction to a quarter period, then a polynomial; absolute error below 1e-6 plus the
-/// rounding of x itself. Free of branches so that the lanes vectorize.
+/// sin^2(x) for any |x| up to some thousands: reduction to a quarter period, then a polynomial; absolute error below 1e-6 plus
+/// the rounding of x itself. Free of branches so that the lanes vectorize.
 OPAL_HD inline float sine_squared(float x) {
     const float turns = x * (1.0f / pi_f);
     const float y = pi_f * (turns - rintf(turns));
     const float y2 = y * y;
-    const float s = y * (1.0f + y2 * (-1.0f / 6.0f + y2 * (1.0f / 120.0f + y2 * (-1.0f / 5040.0f + y2 * (1.0f / 362880.0f + y2 * (-1.0f / 39916800.0f))))));
+    const float s =
+        y * (1.0f + y2 * (-1.0f / 6.0f +
+                          y2 * (1.0f / 120.0f + y2 * (-1.0f / 5040.0f + y2 * (1.0f / 362880.0f + y2 * (-1.0f / 39916800.0f))))));
     return s * s;
 }
 
@@ -41,24 +43,24 @@ OPAL_HD inline float block_reflection_odds(float kappa_t, float delta_t) {
 
 /// One family of planes met at a given angle: everything but the wavelength.
 struct BeamGeometry {
-    float cosine;           ///< |w . g|, direction of travel against the planes' normal
-    float g_per_nm;         ///< |G|
-    float epsilon;          ///< |eps_G|
+    float cosine;    ///< |w . g|, direction of travel against the planes' normal
+    float g_per_nm;  ///< |G|
+    float epsilon;   ///< |eps_G|
     float n_eff;
-    float block_nm;         ///< thickness of one coherent block along the normal
-    float blocks;           ///< how many of them the path through the grain crosses, at least 1
+    float block_nm;  ///< thickness of one coherent block along the normal
+    float blocks;    ///< how many of them the path through the grain crosses, at least 1
 };
 
-/// Blocks of a path of length `chord_nm` through a grain whose coherent blocks are `coherence_nm` thick along the planes' normal: a
-/// shorter crossing is one thinner block.
+/// Blocks of a path of length `chord_nm` through a grain whose coherent blocks are `coherence_nm` thick along the planes' normal:
+/// a shorter crossing is one thinner block.
 OPAL_HD inline void set_blocks(BeamGeometry& beam, float chord_nm, float coherence_nm) {
     const float depth_nm = chord_nm * beam.cosine;
     beam.block_nm = min_of(coherence_nm, depth_nm);
     beam.blocks = max_of(1.0f, depth_nm / coherence_nm);
 }
 
-/// Reflection odds N = R / (1 - R) of a pile of incoherently stacked blocks, for every lane and both polarizations: elements 0..3 are
-/// s, 4..7 are p. R = M r / (1 + (M - 1) r) is the same as N = M r / (1 - r), so a fraction x of the path has odds x N.
+/// Reflection odds N = R / (1 - R) of a pile of incoherently stacked blocks, for every lane and both polarizations: elements 0..3
+/// are s, 4..7 are p. R = M r / (1 + (M - 1) r) is the same as N = M r / (1 - r), so a fraction x of the path has odds x N.
 struct PileOdds {
     static constexpr int size = 2 * num_lanes;
     float odds[size];
@@ -78,10 +80,11 @@ struct PileOdds {
 };
 
 /// Fills the odds of a pile. Coupling kappa = pi |eps_G| C / (n lambda c), C = 1 (s) or |1 - 2 c^2| (p); detuning
-/// delta = 2 pi (n c / lambda - |G| / 2) = pi |G| (lambda_B / lambda - 1) (two-beam dynamical diffraction, Zachariasen 1945). More than an
-/// octave from the Bragg wavelength the two-beam picture (one strong G near its Bragg condition) does not hold, and grazing passes
-/// would get a coupling that grows without bound: nothing is reflected there. Returns false where that is so for every lane.
-/// The loops are free of branches and calls so that they vectorize; the few elements inside the band are mended afterwards.
+/// delta = 2 pi (n c / lambda - |G| / 2) = pi |G| (lambda_B / lambda - 1) (two-beam dynamical diffraction, Zachariasen 1945).
+/// More than an octave from the Bragg wavelength the two-beam picture (one strong G near its Bragg condition) does not hold, and
+/// grazing passes would get a coupling that grows without bound: nothing is reflected there. Returns false where that is so for
+/// every lane. The loops are free of branches and calls so that they vectorize; the few elements inside the band are mended
+/// afterwards.
 OPAL_HD inline bool pile_odds(const BeamGeometry& beam, const float* wavelength_nm, PileOdds& result) {
     const float bragg_nm = 2.0f * beam.n_eff * beam.cosine / beam.g_per_nm;
     const float coupling = pi_f * beam.epsilon * beam.block_nm / (beam.n_eff * beam.cosine);

@@ -15,25 +15,49 @@ template <typename T>
 OPAL_HD inline T max_of(T a, T b) {
     return a < b ? b : a;
 }
-OPAL_HD inline float square(float x) { return x * x; }
+OPAL_HD inline float square(float x) {
+    return x * x;
+}
 
 struct Vec3 {
     float x = 0.0f, y = 0.0f, z = 0.0f;
 };
 
-OPAL_HD inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-OPAL_HD inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-OPAL_HD inline Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-OPAL_HD inline Vec3 operator*(float s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-OPAL_HD inline Vec3 operator*(Vec3 a, float s) { return s * a; }
-OPAL_HD inline float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-OPAL_HD inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-OPAL_HD inline float length(Vec3 a) { return sqrtf(dot(a, a)); }
-OPAL_HD inline Vec3 normalize(Vec3 a) { return (1.0f / length(a)) * a; }
-OPAL_HD inline float max_abs(Vec3 a) { return max_of(fabsf(a.x), max_of(fabsf(a.y), fabsf(a.z))); }
+OPAL_HD inline Vec3 operator+(Vec3 a, Vec3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+OPAL_HD inline Vec3 operator-(Vec3 a, Vec3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+OPAL_HD inline Vec3 operator-(Vec3 a) {
+    return {-a.x, -a.y, -a.z};
+}
+OPAL_HD inline Vec3 operator*(float s, Vec3 a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+OPAL_HD inline Vec3 operator*(Vec3 a, float s) {
+    return s * a;
+}
+OPAL_HD inline float dot(Vec3 a, Vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+OPAL_HD inline Vec3 cross(Vec3 a, Vec3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+OPAL_HD inline float length(Vec3 a) {
+    return sqrtf(dot(a, a));
+}
+OPAL_HD inline Vec3 normalize(Vec3 a) {
+    return (1.0f / length(a)) * a;
+}
+OPAL_HD inline float max_abs(Vec3 a) {
+    return max_of(fabsf(a.x), max_of(fabsf(a.y), fabsf(a.z)));
+}
 
 /// Mirror image of a direction in the plane with unit normal `normal`.
-OPAL_HD inline Vec3 mirror(Vec3 direction, Vec3 normal) { return direction - (2.0f * dot(direction, normal)) * normal; }
+OPAL_HD inline Vec3 mirror(Vec3 direction, Vec3 normal) {
+    return direction - (2.0f * dot(direction, normal)) * normal;
+}
 
 struct Ray {
     Vec3 origin;

@@ -35,10 +35,10 @@ EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
     for (const MeshData& mesh : meshes) {
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         // Copied into Embree's own buffers: it reads 16 bytes at the last vertex.
-        auto* positions = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                     sizeof(Vec3), mesh.positions.size()));
-        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
+        auto* positions = static_cast<Vec3*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
+        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                            3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
         if (!positions || !indices) throw SystemError("Embree: out of memory");
         std::copy(mesh.positions.begin(), mesh.positions.end(), positions);
         std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
@@ -46,8 +46,8 @@ EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
     }
-    // Built by one thread: the tree, and with it the order in which ties are met, must not depend on how many cores there are. (Embree's
-    // own thread limit would hold for the whole process.)
+    // Built by one thread: the tree, and with it the order in which ties are met, must not depend on how many cores there are.
+    // (Embree's own thread limit would hold for the whole process.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
     if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw SystemError("Embree could not build the scene");
 }

@@ -38,7 +38,8 @@ void render_tile(const HostScene& scene, const EmbreeScene& intersector, int til
             for (int sample = first_sample; sample < end_sample; ++sample) {
                 const std::uint32_t pixel = std::uint32_t(y) * std::uint32_t(view.width) + std::uint32_t(x);
                 PathWavelengths wavelengths;
-                const PathResult result = trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, sums.counters);
+                const PathResult result =
+                    trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, sums.counters);
                 film.add(view.spectra, pixel, wavelengths, result, sums.totals);
             }
 }
@@ -107,7 +108,8 @@ void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std:
             float* target = pixels.data() + pixel * channels;
             std::copy_n(image.pixels.data() + pixel * old_channels, old_channels, target);
             target += old_channels;
-            const Ray ray = camera_ray(view.camera, (float(x) + 0.5f) / float(view.width), (float(y) + 0.5f) / float(view.height), 0.0f, 0.0f);
+            const Ray ray = camera_ray(view.camera, (float(x) + 0.5f) / float(view.width), (float(y) + 0.5f) / float(view.height),
+                                       0.0f, 0.0f);
             RayHit hit;
             const bool found = intersector.closest(ray, hit);
             const Surface surface = found ? surface_at(view, hit) : Surface{};

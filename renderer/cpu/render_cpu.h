@@ -12,8 +12,8 @@
 namespace opal {
 
 struct RenderLimits {
-    int samples = 256;       ///< per pixel
-    double time_s = 0.0;     ///< stop after this long (a started pass is finished); 0: no limit
+    int samples = 256;    ///< per pixel
+    double time_s = 0.0;  ///< stop after this long (a started pass is finished); 0: no limit
 };
 
 struct RenderOutcome {
@@ -24,13 +24,13 @@ struct RenderOutcome {
     int finished_samples = 0;  ///< passes over the whole picture
 };
 
-/// Renders a scene on all CPU cores: TBB over tiles, pass after pass, so that whatever ends it leaves a whole picture. The film's content
-/// depends on the scene alone, not on threads. `progress` gets the fraction done.
+/// Renders a scene on all CPU cores: TBB over tiles, pass after pass, so that whatever ends it leaves a whole picture. The film's
+/// content depends on the scene alone, not on threads. `progress` gets the fraction done.
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
                          const std::function<void(double)>& progress);
 
-/// Adds the requested channels to a picture from one ray through each pixel's centre: object_id (index in the scene, -1 for none),
-/// grain_id (grain at the surface; 0 for none), depth (mm, 0 for none), normal (.X .Y .Z, world).
+/// Adds the requested channels to a picture from one ray through each pixel's centre: object_id (index in the scene, -1 for
+/// none), grain_id (grain at the surface; 0 for none), depth (mm, 0 for none), normal (.X .Y .Z, world).
 void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std::vector<std::string>& aovs, Image& image);
 
 }  // namespace opal

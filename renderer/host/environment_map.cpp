@@ -19,7 +19,8 @@ void fill_studio(EnvironmentMap& map) {
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
             const double theta = units::pi * (y + 0.5) / map.height, phi = 2.0 * units::pi * (x + 0.5) / map.width;
-            const Vec3 direction{float(std::sin(theta) * std::cos(phi)), float(std::sin(theta) * std::sin(phi)), float(std::cos(theta))};
+            const Vec3 direction{float(std::sin(theta) * std::cos(phi)), float(std::sin(theta) * std::sin(phi)),
+                                 float(std::cos(theta))};
             map.texels[std::size_t(y) * map.width + x] = studio_radiance(direction);
         }
 }
@@ -46,8 +47,8 @@ void fill_from_file(EnvironmentMap& map, const std::filesystem::path& path) {
             const Rgb value{pixel[0], pixel[green], pixel[blue]};
             for (const float component : {value.r, value.g, value.b})
                 if (!(component >= 0.0f) || !std::isfinite(component))
-                    throw InputError(fmt::format("{}: texel ({}, {}) is {}; radiance must be finite and at least 0", path.string(),
-                                                 column, y, component));
+                    throw InputError(fmt::format("{}: texel ({}, {}) is {}; radiance must be finite and at least 0",
+                                                 path.string(), column, y, component));
             map.texels.push_back(value);
         }
 }
@@ -90,9 +91,15 @@ EnvironmentMap make_environment(const EnvironmentDescription& description) {
     EnvironmentMap map;
     map.rotation_rad = units::rad_from_deg(description.rotate_deg);
     switch (description.kind) {
-        case EnvironmentKind::studio: fill_studio(map); break;
-        case EnvironmentKind::constant: fill_constant(map); break;
-        case EnvironmentKind::file: fill_from_file(map, description.file); break;
+        case EnvironmentKind::studio:
+            fill_studio(map);
+            break;
+        case EnvironmentKind::constant:
+            fill_constant(map);
+            break;
+        case EnvironmentKind::file:
+            fill_from_file(map, description.file);
+            break;
     }
     for (Rgb& texel : map.texels) {
         const float scale = float(description.radiance);

@@ -10,11 +10,17 @@
 
 namespace opal {
 
-int spectral_bin(double wavelength_nm) { return std::clamp(int((wavelength_nm - 355.0) / 10.0), 0, num_bins - 1); }
+int spectral_bin(double wavelength_nm) {
+    return std::clamp(int((wavelength_nm - 355.0) / 10.0), 0, num_bins - 1);
+}
 
-double bin_width_nm(int bin) { return bin == 0 || bin == num_bins - 1 ? 5.0 : 10.0; }
+double bin_width_nm(int bin) {
+    return bin == 0 || bin == num_bins - 1 ? 5.0 : 10.0;
+}
 
-double bin_centre_nm(int bin) { return 360.0 + 10.0 * bin; }
+double bin_centre_nm(int bin) {
+    return 360.0 + 10.0 * bin;
+}
 
 void SpectrumTotals::add(const SpectrumTotals& other) {
     for (int i = 0; i < num_bins; ++i) {
@@ -50,7 +56,8 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const PathWave
         totals.radiance[bins[i]] += in_bin[i];
         const double truncated = double(result.truncated.v[i]) * per_density;
         totals.truncated[bins[i]] += truncated / bin_width_nm(bins[i]);
-        totals.truncated_squared[bins[i]] += wavelengths.count * truncated * truncated / (bin_width_nm(bins[i]) * bin_width_nm(bins[i]));
+        totals.truncated_squared[bins[i]] +=
+            wavelengths.count * truncated * truncated / (bin_width_nm(bins[i]) * bin_width_nm(bins[i]));
         const double lost = truncated * double(table_at(tables.white, wavelengths.wavelength_nm[i]));
         lost_x += lost * double(observer.x);
         lost_y += lost * double(observer.y);

@@ -18,10 +18,10 @@ inline constexpr int num_bins = 48;
 /// Sums over the whole picture, per bin: for the report and for checking energy without storing spectra per pixel.
 struct SpectrumTotals {
     std::array<double, num_bins> radiance = {};
-    std::array<double, num_bins> radiance_squared = {};  ///< of single samples
-    std::array<double, num_bins> truncated = {};         ///< throughput lost at the bounce limit
-    std::array<double, num_bins> truncated_squared = {}; ///< upper bound: of single lanes
-    std::array<double, 3> truncated_rgb = {};            ///< the same in linear sRGB under white of radiance 1
+    std::array<double, num_bins> radiance_squared = {};   ///< of single samples
+    std::array<double, num_bins> truncated = {};          ///< throughput lost at the bounce limit
+    std::array<double, num_bins> truncated_squared = {};  ///< upper bound: of single lanes
+    std::array<double, 3> truncated_rgb = {};             ///< the same in linear sRGB under white of radiance 1
     std::uint64_t samples = 0;
 
     void add(const SpectrumTotals& other);
@@ -32,7 +32,8 @@ struct FilmSample {
     double x = 0.0, y = 0.0, z = 0.0;
 };
 
-/// Accumulates samples per pixel: linear sRGB sums in double precision, sums of squares for the variance, counts, optional spectra.
+/// Accumulates samples per pixel: linear sRGB sums in double precision, sums of squares for the variance, counts, optional
+/// spectra.
 class Film {
   public:
     Film(int width, int height, bool spectral);

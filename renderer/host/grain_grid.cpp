@@ -25,7 +25,11 @@ GrainGridData::~GrainGridData() = default;
 GrainGridData::GrainGridData(GrainGridData&&) noexcept = default;
 GrainGridData& GrainGridData::operator=(GrainGridData&&) noexcept = default;
 
-GrainField GrainGridData::field() const { return storage_->field; }
-std::size_t GrainGridData::size_bytes() const { return storage_->handle.size(); }
+GrainField GrainGridData::field() const {
+    return storage_->field;
+}
+std::size_t GrainGridData::size_bytes() const {
+    return storage_->handle.size();
+}
 
 }  // namespace opal

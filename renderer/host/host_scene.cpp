@@ -14,9 +14,12 @@
 namespace opal {
 namespace {
 
-Vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+Vec3 to_vec3(const std::array<double, 3>& v) {
+    return {float(v[0]), float(v[1]), float(v[2])};
+}
 
-/// The families a grain crossing tests: all inside the limiting sphere, or the strongest where there are more than a path can mark.
+/// The families a grain crossing tests: all inside the limiting sphere, or the strongest where there are more than a path can
+/// mark.
 int choose_pairs(const CrystalParameters& crystal, PlanePair* chosen, int& reciprocal_points, std::vector<std::string>& notices) {
     std::vector<PlanePair> pairs(max_plane_pairs);
     const int inside = reciprocal_pairs(crystal, units::wavelength_min_nm, pairs.data(), max_plane_pairs);
@@ -24,10 +27,12 @@ int choose_pairs(const CrystalParameters& crystal, PlanePair* chosen, int& recip
     pairs.resize(std::size_t(std::min(inside, max_plane_pairs)));
     std::erase_if(pairs, [](const PlanePair& pair) { return !(pair.epsilon > 0.0f); });
     if (pairs.size() > max_tested_pairs) {
-        std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.epsilon > b.epsilon; });
+        std::stable_sort(pairs.begin(), pairs.end(),
+                         [](const PlanePair& a, const PlanePair& b) { return a.epsilon > b.epsilon; });
         pairs.resize(max_tested_pairs);
-        notices.push_back(fmt::format("{} families of planes can diffract visible light; the {} strongest are used (next: {:.2g} of the first)",
-                                      inside, max_tested_pairs, double(pairs.back().epsilon) / double(pairs.front().epsilon)));
+        notices.push_back(
+            fmt::format("{} families of planes can diffract visible light; the {} strongest are used (next: {:.2g} of the first)",
+                        inside, max_tested_pairs, double(pairs.back().epsilon) / double(pairs.front().epsilon)));
     }
     std::copy(pairs.begin(), pairs.end(), chosen);
     return static_cast<int>(pairs.size());
@@ -116,10 +121,18 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
 void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {
     MeshData mesh;
     switch (object.kind) {
-        case ObjectKind::plane: mesh = make_plane(object.size_mm); break;
-        case ObjectKind::sphere: mesh = make_sphere(object.radius_mm); break;
-        case ObjectKind::cylinder: mesh = make_cylinder(object.radius_mm, object.height_mm, object.bevel_mm); break;
-        default: mesh = load_mesh(object.file); break;
+        case ObjectKind::plane:
+            mesh = make_plane(object.size_mm);
+            break;
+        case ObjectKind::sphere:
+            mesh = make_sphere(object.radius_mm);
+            break;
+        case ObjectKind::cylinder:
+            mesh = make_cylinder(object.radius_mm, object.height_mm, object.bevel_mm);
+            break;
+        default:
+            mesh = load_mesh(object.file);
+            break;
     }
     transform_mesh(mesh, object_transform(object));
     const auto found = std::find_if(materials.begin(), materials.end(),

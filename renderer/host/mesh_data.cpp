@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 #include <cmath>
 
 #include "formats/error.h"
@@ -64,8 +64,8 @@ MeshData make_cylinder(double radius_mm, double height_mm, double bevel_mm) {
     std::vector<ProfilePoint> profile = {{0.0, 0.0, 0.0, 1.0}};
     for (int i = 0; i <= bevel_steps; ++i) {
         const double angle = 0.5 * units::pi * i / bevel_steps;
-        profile.push_back({radius_mm - bevel_mm + bevel_mm * std::sin(angle), -bevel_mm + bevel_mm * std::cos(angle), std::sin(angle),
-                           std::cos(angle)});
+        profile.push_back({radius_mm - bevel_mm + bevel_mm * std::sin(angle), -bevel_mm + bevel_mm * std::cos(angle),
+                           std::sin(angle), std::cos(angle)});
     }
     profile.push_back({radius_mm, -height_mm, 1.0, 0.0});
     profile.push_back({radius_mm, -height_mm, 0.0, -1.0});
@@ -77,9 +77,9 @@ MeshData load_mesh(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError(fmt::format("{}: no such mesh file", path.string()));
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                                                aiProcess_SortByPType | aiProcess_PreTransformVertices |
-                                                                aiProcess_FindDegenerates);
+    const aiScene* scene =
+        importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                                             aiProcess_PreTransformVertices | aiProcess_FindDegenerates);
     if (!scene) throw InputError(fmt::format("{}: not a readable mesh: {}", path.string(), importer.GetErrorString()));
     MeshData mesh;
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {

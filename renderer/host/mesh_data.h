@@ -17,9 +17,7 @@ struct MeshData {
     std::vector<std::uint32_t> indices;
     int material = -1;
 
-    MeshView view() const {
-        return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material};
-    }
+    MeshView view() const { return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material}; }
 };
 
 /// A square of edge `size_mm` at z = 0, facing up.

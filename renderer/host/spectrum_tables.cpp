@@ -40,7 +40,8 @@ SpectrumTablesData make_spectrum_tables() {
     double total = 0.0;
     for (int i = 0; i + 1 < spectrum_samples; ++i) {
         const Vec3 a = tables.observer[i], b = tables.observer[i + 1];
-        density.push_back(0.5 * (double(a.x + a.y + a.z) * double(tables.white[i]) + double(b.x + b.y + b.z) * double(tables.white[i + 1])));
+        density.push_back(
+            0.5 * (double(a.x + a.y + a.z) * double(tables.white[i]) + double(b.x + b.y + b.z) * double(tables.white[i + 1])));
         total += density.back();
     }
     tables.cdf.push_back(0.0f);

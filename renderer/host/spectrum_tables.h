@@ -18,8 +18,9 @@ struct SpectrumTablesData {
     SpectrumTables view() const { return {observer.data(), white.data(), rgb_basis.data(), pdf.data(), cdf.data()}; }
 };
 
-/// CIE 1931 observer over its integral of y, D65 with Y = 1, the RGB basis, and a density of wavelengths that follows what a display
-/// shows of white light: nine tenths proportional to D65 (x + y + z), one tenth uniform so that every wavelength is drawn.
+/// CIE 1931 observer over its integral of y, D65 with Y = 1, the RGB basis, and a density of wavelengths that follows what a
+/// display shows of white light: nine tenths proportional to D65 (x + y + z), one tenth uniform so that every wavelength is
+/// drawn.
 SpectrumTablesData make_spectrum_tables();
 
 /// Linear sRGB of XYZ whose white is this project's D65 table, so that white is exactly (1, 1, 1).

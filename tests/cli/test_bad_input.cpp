@@ -51,10 +51,13 @@ TEST_F(BadInput, Recipe) {
     expect_failure(build("wrong_type.toml"), 2, "wrong_type.toml:4:12: crystal.n_sphere: expected a number");
     expect_failure(build("not_a_number.toml"), 2, "not_a_number.toml:4:12: crystal.n_sphere: nan is out of range");
     expect_failure(build("negative.toml"), 2, "negative.toml:4:18: base_color.sigma_a_per_mm: -0.1 is out of range");
-    expect_failure(build("probability.toml"), 2, "probability.toml:4:29: grains.sintering.probability: 1.01 is out of range; allowed: 0 to 1");
-    expect_failure(build("typo.toml"), 2, "typo.toml:4:1: unknown key 'crystal.sphere_diametre_nm'; did you mean 'sphere_diameter_nm'?");
+    expect_failure(build("probability.toml"), 2,
+                   "probability.toml:4:29: grains.sintering.probability: 1.01 is out of range; allowed: 0 to 1");
+    expect_failure(build("typo.toml"), 2,
+                   "typo.toml:4:1: unknown key 'crystal.sphere_diametre_nm'; did you mean 'sphere_diameter_nm'?");
     expect_failure(build("absorber.toml"), 2, "missing.csv: no such file");
-    expect_failure(build("good.toml", "--set grains.num_sites=-3"), 2, "--set grains.num_sites=-3: grains.num_sites: -3 is out of range");
+    expect_failure(build("good.toml", "--set grains.num_sites=-3"), 2,
+                   "--set grains.num_sites=-3: grains.num_sites: -3 is out of range");
     expect_nothing_written(files);
 }
 
@@ -103,7 +106,8 @@ TEST_F(BadInput, Opal) {
     std::filesystem::resize_file(at("cut.vdb"), std::filesystem::file_size(at("cut.vdb")) / 2);
     const std::size_t files = count_files((folder_ / "").string());
     expect_failure(render("scene.toml", "--set object.0.file=" + at("gone.vdb")), 2, "gone.vdb: no such file");
-    expect_failure(render("scene.toml", "--set object.0.file=" + at("fog.vdb")), 2, "fog.vdb: no grid named grain_id (found: density)");
+    expect_failure(render("scene.toml", "--set object.0.file=" + at("fog.vdb")), 2,
+                   "fog.vdb: no grid named grain_id (found: density)");
     expect_failure(render("scene.toml", "--set object.0.file=" + at("text.vdb")), 2, "text.vdb: not a complete .vdb file");
     expect_failure(render("scene.toml", "--set object.0.file=" + at("cut.vdb")), 2, "cut.vdb: not a complete .vdb file");
     expect_nothing_written(files);

@@ -13,8 +13,9 @@ namespace {
 TEST(Interrupt, ControlCWritesWhatIsThere) {
     const ScratchFolder folder;
     write_opal_asset(SmallOpal().make(), folder / "opal.vdb");
-    std::ofstream(folder / "scene.toml") << "[render]\nwidth = 160\nheight = 120\nsamples = 1000000\n[camera]\nposition_mm = [0, -20, 8]\n"
-                                            "[[object]]\nkind = \"opal\"\nfile = \"opal.vdb\"\n";
+    std::ofstream(folder / "scene.toml")
+        << "[render]\nwidth = 160\nheight = 120\nsamples = 1000000\n[camera]\nposition_mm = [0, -20, 8]\n"
+           "[[object]]\nkind = \"opal\"\nfile = \"opal.vdb\"\n";
     const std::string output = (folder / "out.exr").string();
     const ProgramResult result = run_program("timeout --preserve-status --signal=INT 4 " + opal_render + " " +
                                              (folder / "scene.toml").string() + " -o " + output);
@@ -31,7 +32,8 @@ TEST(Interrupt, ControlCWritesWhatIsThere) {
 TEST(Interrupt, TimeLimitEndsARender) {
     const ScratchFolder folder;
     write_opal_asset(SmallOpal().make(), folder / "opal.vdb");
-    std::ofstream(folder / "scene.toml") << "[render]\nwidth = 80\nheight = 60\nsamples = 1000000\n[[object]]\nkind = \"opal\"\nfile = \"opal.vdb\"\n";
+    std::ofstream(folder / "scene.toml")
+        << "[render]\nwidth = 80\nheight = 60\nsamples = 1000000\n[[object]]\nkind = \"opal\"\nfile = \"opal.vdb\"\n";
     const ProgramResult result = run_program("timeout 60 " + opal_render + " " + (folder / "scene.toml").string() + " -o " +
                                              (folder / "out.exr").string() + " --time 2s");
     EXPECT_EQ(result.exit_code, 0) << result.err;

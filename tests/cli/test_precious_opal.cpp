@@ -15,13 +15,14 @@ namespace {
 constexpr int hue_bins = 12;
 constexpr int unsaturated = -1;
 
-/// Hue bin (30 degrees each) of a display colour, or `unsaturated` where its HSV saturation is at most 0.5, or it is so dark (value below
-/// 0.15) that its hue is noise which nobody sees.
+/// Hue bin (30 degrees each) of a display colour, or `unsaturated` where its HSV saturation is at most 0.5, or it is so dark
+/// (value below 0.15) that its hue is noise which nobody sees.
 int hue_bin(const float* rgb) {
     const float high = std::max({rgb[0], rgb[1], rgb[2]}), low = std::min({rgb[0], rgb[1], rgb[2]});
     if (!(high > 0.15f) || (high - low) / high <= 0.5f) return unsaturated;
     const float chroma = high - low;
-    float sixth = rgb[0] == high ? (rgb[1] - rgb[2]) / chroma : (rgb[1] == high ? 2.0f + (rgb[2] - rgb[0]) / chroma : 4.0f + (rgb[0] - rgb[1]) / chroma);
+    float sixth = rgb[0] == high ? (rgb[1] - rgb[2]) / chroma
+                                 : (rgb[1] == high ? 2.0f + (rgb[2] - rgb[0]) / chroma : 4.0f + (rgb[0] - rgb[1]) / chroma);
     if (sixth < 0.0f) sixth += 6.0f;
     return std::min(hue_bins - 1, int(2.0f * sixth));
 }
@@ -50,10 +51,11 @@ class PreciousOpal : public testing::Test {
     }
 
     static Picture render(const std::string& name, double rotate_deg, int seed) {
-        const ProgramResult result = run_program(
-            opal_render + " " + examples + "/precious_opal/scene.toml -o " + (*folder_ / (name + ".exr")).string() + " --set object.0.file=" +
-            (*folder_ / "opal.vdb").string() + " --set render.width=128 --set render.height=96 --spp 896 --set environment.rotate_deg=" +
-            std::to_string(rotate_deg) + " --seed " + std::to_string(seed));
+        const ProgramResult result =
+            run_program(opal_render + " " + examples + "/precious_opal/scene.toml -o " + (*folder_ / (name + ".exr")).string() +
+                        " --set object.0.file=" + (*folder_ / "opal.vdb").string() +
+                        " --set render.width=128 --set render.height=96 --spp 896 --set environment.rotate_deg=" +
+                        std::to_string(rotate_deg) + " --seed " + std::to_string(seed));
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return {read_image(*folder_ / (name + ".exr"))};
     }
@@ -62,14 +64,15 @@ class PreciousOpal : public testing::Test {
         return picture.linear.pixel(x, y)[picture.linear.find_channel("object_id")] == 0.0f;
     }
 
-    /// Hue bin of a gem pixel: linear light averaged over the pixels around it that show the same grain (7x7 at most), which keeps patches
-    /// apart and takes most of the noise away, then shown as the PNG would.
+    /// Hue bin of a gem pixel: linear light averaged over the pixels around it that show the same grain (7x7 at most), which
+    /// keeps patches apart and takes most of the noise away, then shown as the PNG would.
     static int hue_at(const Picture& picture, int x, int y) {
         Image mean;
         mean.width = mean.height = 1;
         mean.channel_names = {"R", "G", "B"};
         mean.pixels.assign(3, 0.0f);
-        const int channels[3] = {picture.linear.find_channel("R"), picture.linear.find_channel("G"), picture.linear.find_channel("B")};
+        const int channels[3] = {picture.linear.find_channel("R"), picture.linear.find_channel("G"),
+                                 picture.linear.find_channel("B")};
         float count = 0.0f;
         const int grain = picture.linear.find_channel("grain_id");
         for (int j = std::max(0, y - 3); j <= std::min(picture.linear.height - 1, y + 3); ++j)
@@ -131,8 +134,9 @@ TEST_F(PreciousOpal, ShowsSaturatedColorsOfManyHues) {
 
 TEST_F(PreciousOpal, ColorsChangeWhenTheLightTurns) {
     const double by_noise = changed_hues(*lit_, *noise_), by_light = changed_hues(*lit_, *turned_);
-    std::printf("hue bin of saturated pixels: %.1f %% change when the light turns by 10 degrees, %.1f %% with other random numbers\n",
-                100.0 * by_light, 100.0 * by_noise);
+    std::printf(
+        "hue bin of saturated pixels: %.1f %% change when the light turns by 10 degrees, %.1f %% with other random numbers\n",
+        100.0 * by_light, 100.0 * by_noise);
     // A pixel that other random numbers would have changed anyway says nothing: of the others, 30 % must change.
     EXPECT_GE((by_light - by_noise) / (1.0 - by_noise), 0.30);
     EXPECT_LE(by_noise, 0.25);
@@ -144,7 +148,8 @@ TEST_F(PreciousOpal, BodyIsDarkAndTheStandIsLit) {
         for (int x = 0; x < lit_->linear.width; ++x) {
             const float* pixel = lit_->linear.pixel(x, y);
             const float object = pixel[lit_->linear.find_channel("object_id")];
-            const float luminance = 0.2126f * pixel[lit_->linear.find_channel("R")] + 0.7152f * pixel[lit_->linear.find_channel("G")] +
+            const float luminance = 0.2126f * pixel[lit_->linear.find_channel("R")] +
+                                    0.7152f * pixel[lit_->linear.find_channel("G")] +
                                     0.0722f * pixel[lit_->linear.find_channel("B")];
             if (object == 0.0f) gem.push_back(luminance);
             if (object == 1.0f) stand.push_back(luminance);
@@ -159,20 +164,23 @@ TEST_F(PreciousOpal, BodyIsDarkAndTheStandIsLit) {
     EXPECT_LT(stand[stand.size() / 50], 0.7f * stand[stand.size() / 2]);
 }
 
-/// Sizes on the picture follow the recipe. All sites lie inside the shape, so what its face shows is the outermost layer of cells: n sites
-/// per volume are n^(-1/3) apart and such a layer holds n^(2/3) cells per area, a little fewer since elimination leaves the cells at the
-/// face larger. (A plane through the interior would cut 1.458 n^(2/3) Poisson-Voronoi cells.)
+/// Sizes on the picture follow the recipe. All sites lie inside the shape, so what its face shows is the outermost layer of
+/// cells: n sites per volume are n^(-1/3) apart and such a layer holds n^(2/3) cells per area, a little fewer since elimination
+/// leaves the cells at the face larger. (A plane through the interior would cut 1.458 n^(2/3) Poisson-Voronoi cells.)
 TEST_F(PreciousOpal, GrainSizeMatchesTheRecipe) {
     std::vector<double> constants;
     for (const int sites : {300, 2400}) {
         const std::string vdb = (*folder_ / ("ball" + std::to_string(sites) + ".vdb")).string();
-        const ProgramResult built = run_program(opal_model + " build " + examples + "/precious_opal/recipe.toml -o " + vdb +
-                                                " --set shape.kind=box --set shape.size_mm=[10.0,10.0,5.0] --set grains.num_sites=" +
-                                                std::to_string(sites) + " --set grains.sintering.probability=0.0");
+        const ProgramResult built = run_program(
+            opal_model + " build " + examples + "/precious_opal/recipe.toml -o " + vdb +
+            " --set shape.kind=box --set shape.size_mm=[10.0,10.0,5.0] --set grains.num_sites=" + std::to_string(sites) +
+            " --set grains.sintering.probability=0.0");
         ASSERT_EQ(built.exit_code, 0) << built.err;
         const Rendered rendered = render_text(
-            "[render]\nwidth = 400\nheight = 400\n[film]\naovs = [\"grain_id\"]\n[camera]\nkind = \"orthographic\"\nposition_mm = [0, 0, 50]\n"
-            "target_mm = [0, 0, 0]\nup = [0, 1, 0]\nview_height_mm = 8.0\n[[object]]\nkind = \"opal\"\nfile = '" + vdb + "'\n",
+            "[render]\nwidth = 400\nheight = 400\n[film]\naovs = [\"grain_id\"]\n[camera]\nkind = \"orthographic\"\nposition_mm "
+            "= [0, 0, 50]\n"
+            "target_mm = [0, 0, 0]\nup = [0, 1, 0]\nview_height_mm = 8.0\n[[object]]\nkind = \"opal\"\nfile = '" +
+                vdb + "'\n",
             1);
         const int channel = rendered.image.find_channel("grain_id");
         // Grains cut by the picture's edge count half: those are seen on one more picture beside it.

@@ -15,8 +15,8 @@ std::string bytes(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// The file without what OpenVDB puts there anew each time: the identifier in its header. Offsets of the header: magic (8), file version
-/// (4), library version (8), grid offsets flag (1), then 36 characters.
+/// The file without what OpenVDB puts there anew each time: the identifier in its header. Offsets of the header: magic (8), file
+/// version (4), library version (8), grid offsets flag (1), then 36 characters.
 std::string content_of_vdb(const std::filesystem::path& path) {
     std::string content = bytes(path);
     const std::size_t identifier = 8 + 4 + 8 + 1;
@@ -39,9 +39,9 @@ TEST(SameBits, AcrossThreadsAndRuns) {
 
     const auto render = [&](const std::string& name, int threads) {
         const ProgramResult result =
-            run_program(opal_render + " " + scene + " -o " + (folder / name).string() + " --set object.0.file=" +
-                        (folder / "one.vdb").string() + " --set render.width=96 --set render.height=72 --spp 8 --threads " +
-                        std::to_string(threads));
+            run_program(opal_render + " " + scene + " -o " + (folder / name).string() +
+                        " --set object.0.file=" + (folder / "one.vdb").string() +
+                        " --set render.width=96 --set render.height=72 --spp 8 --threads " + std::to_string(threads));
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return bytes(folder / name);
     };

@@ -21,9 +21,9 @@ std::string input_error_of(const Action& action) {
     return "";
 }
 
-#define EXPECT_INPUT_ERROR(action, part)                                                                    \
-    do {                                                                                                    \
-        const std::string message_ = ::opal::input_error_of([&] { action; });                               \
+#define EXPECT_INPUT_ERROR(action, part)                                                                     \
+    do {                                                                                                     \
+        const std::string message_ = ::opal::input_error_of([&] { action; });                                \
         EXPECT_NE(message_.find(part), std::string::npos) << "message: " << message_ << "\nlacks: " << part; \
     } while (false)
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <openvdb/tools/LevelSetSphere.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -137,7 +137,8 @@ TEST_F(OpalAssetTest, WhatLiesOutsideIsEmptied) {
     const OpalAsset asset = read(folder_ / "dirty.vdb");
     EXPECT_EQ(asset.num_grains(), 2u);
     EXPECT_EQ(asset.grain_id->activeVoxelCount(), 2u);
-    for (const openvdb::Coord outside : {openvdb::Coord(2, 0, 0), openvdb::Coord(3, 0, 0), openvdb::Coord(5, 5, 5), openvdb::Coord(5000, 0, 0)})
+    for (const openvdb::Coord outside :
+         {openvdb::Coord(2, 0, 0), openvdb::Coord(3, 0, 0), openvdb::Coord(5, 5, 5), openvdb::Coord(5000, 0, 0)})
         EXPECT_EQ(asset.grain_id->tree().getValue(outside), 0);
 }
 
@@ -185,7 +186,8 @@ TEST_F(OpalAssetTest, CheckReportsVoxelsOutsideTheShape) {
 }
 
 TEST_F(OpalAssetTest, RandomOrientationsAreUniform) {
-    // Mean of the rotation matrix's trace is 0 for uniform rotations, variance of the trace 1 (Diaconis & Shahshahani: moments of SO(3)).
+    // Mean of the rotation matrix's trace is 0 for uniform rotations, variance of the trace 1 (Diaconis & Shahshahani: moments of
+    // SO(3)).
     const int n = 20000;
     double sum = 0.0, square_sum = 0.0;
     for (int g = 1; g <= n; ++g) {

@@ -9,7 +9,9 @@ namespace {
 
 const std::string minimal = "[shape]\nkind = \"ellipsoid\"\n";
 
-Recipe parse(const std::string& text, const std::vector<std::string>& overrides = {}) { return parse_recipe(text, "r.toml", overrides); }
+Recipe parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return parse_recipe(text, "r.toml", overrides);
+}
 
 TEST(Recipe, EverythingButTheShapeHasADefault) {
     const Recipe recipe = parse(minimal);
@@ -20,8 +22,9 @@ TEST(Recipe, EverythingButTheShapeHasADefault) {
 }
 
 TEST(Recipe, ResolvedTextReadsBackToTheSameText) {
-    const Recipe recipe = parse("[shape]\nkind = \"cabochon\"\nsize_mm = [12, 9, 4.5]\n[grains]\nvoxel_size_mm = 0.05\n"
-                                "sintering = { grains = 500 }\n[crystal]\nn_medium = 1.0\n");
+    const Recipe recipe = parse(
+        "[shape]\nkind = \"cabochon\"\nsize_mm = [12, 9, 4.5]\n[grains]\nvoxel_size_mm = 0.05\n"
+        "sintering = { grains = 500 }\n[crystal]\nn_medium = 1.0\n");
     const std::string text = recipe_to_toml(recipe);
     EXPECT_EQ(recipe_to_toml(parse(text)), text);
     EXPECT_NE(text.find("grains = 500"), std::string::npos);
@@ -45,18 +48,23 @@ TEST(Recipe, AnOverrideTakesThePlaceOfItsAlternative) {
 }
 
 TEST(Recipe, AbsorberFilesAreRelativeToWhoNamesThem) {
-    EXPECT_EQ(parse_recipe(minimal + "[base_color]\nabsorber = \"ink.csv\"\n", "sub/r.toml", {}).base_color.absorber, "sub/ink.csv");
+    EXPECT_EQ(parse_recipe(minimal + "[base_color]\nabsorber = \"ink.csv\"\n", "sub/r.toml", {}).base_color.absorber,
+              "sub/ink.csv");
     EXPECT_EQ(parse_recipe(minimal, "sub/r.toml", {"base_color.absorber=ink.csv"}).base_color.absorber, "ink.csv");
 }
 
 TEST(Recipe, ErrorsAreLocated) {
-    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_sites = 0\n"), "r.toml:4:13: grains.num_sites: 0 is out of range; allowed: 1 to");
-    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_site = 5\n"), "r.toml:4:1: unknown key 'grains.num_site'; did you mean 'num_sites'?");
+    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_sites = 0\n"),
+                       "r.toml:4:13: grains.num_sites: 0 is out of range; allowed: 1 to");
+    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_site = 5\n"),
+                       "r.toml:4:1: unknown key 'grains.num_site'; did you mean 'num_sites'?");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nnum_sites = \"many\"\n"), "r.toml:4:13: grains.num_sites: expected an integer");
-    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { probability = 1.5 }\n"), "sintering.probability: 1.5 is out of range; allowed: 0 to 1");
+    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { probability = 1.5 }\n"),
+                       "sintering.probability: 1.5 is out of range; allowed: 0 to 1");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { probability = -0.1 }\n"), "allowed: 0 to 1");
     EXPECT_INPUT_ERROR(parse(minimal + "[crystal]\nn_sphere = nan\n"), "r.toml:4:12: crystal.n_sphere: nan is out of range");
-    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nsigma_a_per_mm = -1.0\n"), "sigma_a_per_mm: -1 is out of range; allowed: 0 to");
+    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nsigma_a_per_mm = -1.0\n"),
+                       "sigma_a_per_mm: -1 is out of range; allowed: 0 to");
     EXPECT_INPUT_ERROR(parse("[shape]\nkind = \"elipsoid\"\n"), "r.toml:2:8: shape.kind: 'elipsoid' is not known");
     EXPECT_INPUT_ERROR(parse("[shape]\nkind = \"elipsoid\"\n"), "did you mean 'ellipsoid'?");
     EXPECT_INPUT_ERROR(parse("[grains]\nnum_sites = 5\n"), "shape: is needed");

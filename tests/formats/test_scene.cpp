@@ -28,8 +28,9 @@ TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {
 }
 
 TEST(Scene, ResolvedTextReadsBackToTheSameText) {
-    const SceneDescription scene = parse(minimal + "[[material]]\nname = \"stand\"\nalbedo = 0.7\n[[object]]\nkind = \"cylinder\"\n"
-                                                   "material = \"stand\"\n[film]\naovs = [\"depth\", \"normal\"]\n");
+    const SceneDescription scene = parse(minimal +
+                                         "[[material]]\nname = \"stand\"\nalbedo = 0.7\n[[object]]\nkind = \"cylinder\"\n"
+                                         "material = \"stand\"\n[film]\naovs = [\"depth\", \"normal\"]\n");
     const std::string text = scene_to_toml(scene);
     EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
 }
@@ -40,7 +41,8 @@ TEST(Scene, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse(minimal + "[render]\nwidht = 3\n"), "unknown key 'render.widht'; did you mean 'width'?");
     EXPECT_INPUT_ERROR(parse(minimal + "[camera]\nposition_mm = [0, 0]\n"), "expected [x, y, z], found 2 elements");
     EXPECT_INPUT_ERROR(parse(minimal + "[camera]\nup = [0, nan, 1]\n"), "camera.up: nan is out of range");
-    EXPECT_INPUT_ERROR(parse(minimal + "[camera]\nposition_mm = [0, 0, 9]\ntarget_mm = [0, 0, 0]\n"), "must not point along the view");
+    EXPECT_INPUT_ERROR(parse(minimal + "[camera]\nposition_mm = [0, 0, 9]\ntarget_mm = [0, 0, 0]\n"),
+                       "must not point along the view");
     EXPECT_INPUT_ERROR(parse(minimal + "[opal]\ndiffraction = \"two beam\"\n"), "did you mean 'two-beam'?");
     EXPECT_INPUT_ERROR(parse(minimal + "[environment]\nkind = \"file\"\n"), "needs a lat-long image");
     EXPECT_INPUT_ERROR(parse("[[object]]\nkind = \"plane\"\nmaterial = \"gold\"\n"), "object.0.material: 'gold' is not known");

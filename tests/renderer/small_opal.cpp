@@ -12,7 +12,9 @@
 
 namespace opal {
 
-SmallOpal::SmallOpal() { constants.sigma_a_per_mm = absorber_spectrum("neutral", 0.0); }
+SmallOpal::SmallOpal() {
+    constants.sigma_a_per_mm = absorber_spectrum("neutral", 0.0);
+}
 
 OpalAsset SmallOpal::make() const {
     initialize_openvdb();
@@ -26,7 +28,8 @@ OpalAsset SmallOpal::make() const {
                                                 {float(radius_mm), float(radius_mm), float(half_z)}),
             *transform);
     else
-        asset.shape = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(float(radius_mm), openvdb::Vec3f(0.0f), float(voxel_mm));
+        asset.shape =
+            openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(float(radius_mm), openvdb::Vec3f(0.0f), float(voxel_mm));
 
     for (int g = 1; g <= grains; ++g) {
         const RandomBlock a = random_block(11, RandomStream::site_candidates, std::uint64_t(g), 0);

@@ -11,10 +11,12 @@
 
 namespace opal {
 
-/// An opal made in the test itself, without the modeler: a ball (or a slab) of voxels labelled by the nearest of `grains` random points.
+/// An opal made in the test itself, without the modeler: a ball (or a slab) of voxels labelled by the nearest of `grains` random
+/// points.
 struct SmallOpal {
     double radius_mm = 3.0;
-    double half_thickness_mm = 0.0;  ///< above 0: a square slab of that half thickness and half width `radius_mm` instead of a ball
+    double half_thickness_mm =
+        0.0;  ///< above 0: a square slab of that half thickness and half width `radius_mm` instead of a ball
     double voxel_mm = 0.1;
     int grains = 40;
     OpalConstants constants;

@@ -13,8 +13,10 @@ TEST(ChiSquareHarness, AcceptsTheRightDensity) {
 
 TEST(ChiSquareHarness, RejectsADensityWrongByTwoPercent) {
     const auto sample = [](double u) { return std::sqrt(u); };
-    EXPECT_FALSE(density_matches(sample, [](double x) { return 1.02 * 2.0 * x; }, 0.0, 1.0));
-    EXPECT_FALSE(density_matches(sample, [](double x) { return 2.0 * x * (x < 0.5 ? 1.02 : (1.0 - 0.02 / 3.0)); }, 0.0, 1.0));
+    EXPECT_FALSE(density_matches(
+        sample, [](double x) { return 1.02 * 2.0 * x; }, 0.0, 1.0));
+    EXPECT_FALSE(density_matches(
+        sample, [](double x) { return 2.0 * x * (x < 0.5 ? 1.02 : (1.0 - 0.02 / 3.0)); }, 0.0, 1.0));
     EXPECT_FALSE(density_matches([](double u) { return 1.01 * std::sqrt(u); }, [](double x) { return 2.0 * x; }, 0.0, 1.0));
 }
 

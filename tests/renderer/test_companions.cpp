@@ -7,8 +7,8 @@
 namespace opal {
 namespace {
 
-/// Uniform light hides wrong weights between the lanes as long as their mean is right; a studio with coloured surroundings does not. One wavelength
-/// per path is the reference: nothing is weighted there.
+/// Uniform light hides wrong weights between the lanes as long as their mean is right; a studio with coloured surroundings does
+/// not. One wavelength per path is the reference: nothing is weighted there.
 TEST(Companions, ChangeNothingButTheNoise) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 300.0;
@@ -18,13 +18,14 @@ TEST(Companions, ChangeNothingButTheNoise) {
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
     const auto render = [&](int companions, int samples) {
-        return render_text("[render]\nwidth = 32\nheight = 32\nsampler = \"independent\"\n[camera]\nposition_mm = [0, -20, 8]\n"
-                           "target_mm = [0, 0, 0]\nvertical_fov_deg = 18\n[opal]\ncompanions = " +
-                               std::to_string(companions) +
-                               "\n[[material]]\nname = \"floor\"\nalbedo = [0.7, 0.4, 0.2]\n[[object]]\nkind = \"plane\"\n"
-                               "material = \"floor\"\ntranslate_mm = [0, 0, -3.1]\n[[object]]\nkind = \"opal\"\nfile = '" +
-                               (folder / "opal.vdb").string() + "'\n",
-                           samples)
+        return render_text(
+                   "[render]\nwidth = 32\nheight = 32\nsampler = \"independent\"\n[camera]\nposition_mm = [0, -20, 8]\n"
+                   "target_mm = [0, 0, 0]\nvertical_fov_deg = 18\n[opal]\ncompanions = " +
+                       std::to_string(companions) +
+                       "\n[[material]]\nname = \"floor\"\nalbedo = [0.7, 0.4, 0.2]\n[[object]]\nkind = \"plane\"\n"
+                       "material = \"floor\"\ntranslate_mm = [0, 0, -3.1]\n[[object]]\nkind = \"opal\"\nfile = '" +
+                       (folder / "opal.vdb").string() + "'\n",
+                   samples)
             .outcome.totals;
     };
     const SpectrumTotals alone = render(0, 1024);
@@ -35,7 +36,8 @@ TEST(Companions, ChangeNothingButTheNoise) {
         for (std::size_t bin = 2; bin + 6 < num_bins; ++bin, ++used) {
             const auto mean = [&](const SpectrumTotals& totals) { return totals.radiance[bin] / double(totals.samples); };
             const auto variance = [&](const SpectrumTotals& totals) {
-                return (totals.radiance_squared[bin] / double(totals.samples) - mean(totals) * mean(totals)) / double(totals.samples);
+                return (totals.radiance_squared[bin] / double(totals.samples) - mean(totals) * mean(totals)) /
+                       double(totals.samples);
             };
             const double difference = mean(together) - mean(alone);
             statistic += difference * difference / (variance(together) + variance(alone));

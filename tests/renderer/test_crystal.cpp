@@ -44,7 +44,8 @@ double width_of(double n_sphere, double n_medium, int h, int k, int l) {
     return std::abs(permittivity_coefficient(crystal, g_per_nm)) / mean_permittivity;
 }
 
-/// Relative widths |eps_G| / (mean eps) in per cent computed beforehand from the spheres' form factor, for silica in water and in air.
+/// Relative widths |eps_G| / (mean eps) in per cent computed beforehand from the spheres' form factor, for silica in water and in
+/// air.
 TEST(Crystal, StopBandWidthsPerFamily) {
     EXPECT_NEAR(100.0 * width_of(1.45, 1.333, 1, 1, 1), 1.434, 0.001);
     EXPECT_NEAR(100.0 * width_of(1.45, 1.333, 2, 0, 0), 0.090, 0.001);
@@ -55,7 +56,9 @@ TEST(Crystal, StopBandWidthsPerFamily) {
     EXPECT_NEAR(100.0 * width_of(1.45, 1.0, 1, 1, 1), 5.40, 0.01);
 }
 
-TEST(Crystal, EffectiveIndex) { EXPECT_NEAR(effective_index({250.0, 1.45, 1.333}), 1.41964, 1e-5); }
+TEST(Crystal, EffectiveIndex) {
+    EXPECT_NEAR(effective_index({250.0, 1.45, 1.333}), 1.41964, 1e-5);
+}
 
 }  // namespace
 }  // namespace opal

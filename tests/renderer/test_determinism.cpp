@@ -19,11 +19,14 @@ TEST(Determinism, SameBitsFromAnyNumberOfThreads) {
     small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.2);
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
-    const std::string scene = "[render]\nwidth = 80\nheight = 60\n[film]\naovs = [\"object_id\", \"grain_id\", \"depth\", \"normal\"]\n"
-                              "[camera]\nposition_mm = [0, -20, 12]\ntarget_mm = [0, 0, 0]\n"
-                              "[[material]]\nname = \"m\"\n[[object]]\nkind = \"plane\"\nmaterial = \"m\"\ntranslate_mm = [0, 0, -3.1]\n"
-                              "[[object]]\nkind = \"opal\"\nfile = '" + (folder / "opal.vdb").string() + "'\n";
-    const Rendered one = render_with(1, scene), two = render_with(2, scene), many = render_with(7, scene), again = render_with(2, scene);
+    const std::string scene =
+        "[render]\nwidth = 80\nheight = 60\n[film]\naovs = [\"object_id\", \"grain_id\", \"depth\", \"normal\"]\n"
+        "[camera]\nposition_mm = [0, -20, 12]\ntarget_mm = [0, 0, 0]\n"
+        "[[material]]\nname = \"m\"\n[[object]]\nkind = \"plane\"\nmaterial = \"m\"\ntranslate_mm = [0, 0, -3.1]\n"
+        "[[object]]\nkind = \"opal\"\nfile = '" +
+        (folder / "opal.vdb").string() + "'\n";
+    const Rendered one = render_with(1, scene), two = render_with(2, scene), many = render_with(7, scene),
+                   again = render_with(2, scene);
     EXPECT_EQ(one.image.channel_names.size(), 7u + 6u);
     EXPECT_EQ(one.image.pixels, two.image.pixels);
     EXPECT_EQ(one.image.pixels, many.image.pixels);

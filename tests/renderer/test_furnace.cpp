@@ -7,17 +7,18 @@
 namespace opal {
 namespace {
 
-/// An opal without absorption under uniform light of radiance 1 must be invisible: every sample's expected value is 1 at every wavelength,
-/// whatever reflects, refracts, diffracts or scatters, up to what the bounce limit cuts off, which the render reports.
+/// An opal without absorption under uniform light of radiance 1 must be invisible: every sample's expected value is 1 at every
+/// wavelength, whatever reflects, refracts, diffracts or scatters, up to what the bounce limit cuts off, which the render
+/// reports.
 void expect_invisible(const SmallOpal& small, const std::string& settings, int samples,
                       const std::string& view = "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n") {
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
-    const Rendered rendered = render_text(
-        "[render]\nwidth = 48\nheight = 48\nsampler = \"independent\"\nfilter = \"box\"\n[camera]\n" + view +
-            "vertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
-            (folder / "opal.vdb").string() + "'\n" + settings,
-        samples);
+    const Rendered rendered =
+        render_text("[render]\nwidth = 48\nheight = 48\nsampler = \"independent\"\nfilter = \"box\"\n[camera]\n" + view +
+                        "vertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
+                        (folder / "opal.vdb").string() + "'\n" + settings,
+                    samples);
     const RenderOutcome& outcome = rendered.outcome;
     EXPECT_EQ(outcome.counters.not_a_number, 0u);
     EXPECT_LE(outcome.counters.lost_paths, outcome.totals.samples / 100000);
@@ -34,7 +35,8 @@ void expect_invisible(const SmallOpal& small, const std::string& settings, int s
     for (int bin = 0; bin < num_bins; ++bin) {
         double white = 0.0;
         int count = 0;
-        for (double w = std::max(360.0, bin_centre_nm(bin) - 5.0); w <= std::min(830.0, bin_centre_nm(bin) + 5.0); w += 0.1, ++count)
+        for (double w = std::max(360.0, bin_centre_nm(bin) - 5.0); w <= std::min(830.0, bin_centre_nm(bin) + 5.0);
+             w += 0.1, ++count)
             white += double(table_at(tables.view().white, float(w)));
         white /= count;
         const double mean = outcome.totals.radiance[std::size_t(bin)] / n;
@@ -87,7 +89,8 @@ TEST(Furnace, TruncationIsReported) {
     write_opal_asset(small.make(), folder / "opal.vdb");
     const Rendered rendered = render_text(
         "[render]\nwidth = 48\nheight = 48\nmax_bounces = 4\nsampler = \"independent\"\n[camera]\nposition_mm = [0, -20, 5]\n"
-        "target_mm = [0, 0, 0]\nvertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
+        "target_mm = [0, 0, 0]\nvertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = "
+        "'" +
             (folder / "opal.vdb").string() + "'\n",
         64);
     const MeanEstimate green = region_mean(rendered.image, "G", 0, 0, 48, 48);
@@ -103,7 +106,8 @@ TEST(Furnace, TruncationIsReported) {
 TEST(Furnace, WithAWhiteFloor) {
     SmallOpal small;
     expect_invisible(small,
-                     "[[material]]\nname = \"white\"\nalbedo = 1.0\n[[object]]\nkind = \"plane\"\nmaterial = \"white\"\ntranslate_mm = [0, 0, -3.1]\n",
+                     "[[material]]\nname = \"white\"\nalbedo = 1.0\n[[object]]\nkind = \"plane\"\nmaterial = "
+                     "\"white\"\ntranslate_mm = [0, 0, -3.1]\n",
                      256);
 }
 

@@ -14,7 +14,8 @@ struct Interval {
     double begin;
 };
 
-/// Grains along a ray by tiny steps through the OpenVDB grid: slow, and independent of the walk. Unlabelled voxels continue the grain.
+/// Grains along a ray by tiny steps through the OpenVDB grid: slow, and independent of the walk. Unlabelled voxels continue the
+/// grain.
 std::vector<Interval> march(const openvdb::Int32Grid& grid, openvdb::Vec3d origin, openvdb::Vec3d direction, double end) {
     std::vector<Interval> intervals;
     const auto accessor = grid.getConstAccessor();

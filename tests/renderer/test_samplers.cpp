@@ -17,7 +17,8 @@ TEST(Samplers, RayleighCosine) {
 TEST(Samplers, HenyeyGreensteinCosine) {
     for (const float g : {-0.6f, 0.0f, 0.3f, 0.8f, 0.95f})
         EXPECT_TRUE(density_matches([g](double u) { return double(sample_henyey_greenstein_cosine(float(u), g)); },
-                                    [g](double c) { return 2.0 * double(pi_f) * double(henyey_greenstein_phase(float(c), g)); }, -1.0, 1.0))
+                                    [g](double c) { return 2.0 * double(pi_f) * double(henyey_greenstein_phase(float(c), g)); },
+                                    -1.0, 1.0))
             << "g = " << g;
 }
 

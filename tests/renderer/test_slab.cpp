@@ -7,8 +7,8 @@
 namespace opal {
 namespace {
 
-/// A plate of thickness d, index n, absorption sigma at normal incidence in uniform light of radiance 1 shows R + T of the incoherent
-/// plate (Born & Wolf 1.6, intensities added): with F the Fresnel reflectance and a = exp(-sigma d),
+/// A plate of thickness d, index n, absorption sigma at normal incidence in uniform light of radiance 1 shows R + T of the
+/// incoherent plate (Born & Wolf 1.6, intensities added): with F the Fresnel reflectance and a = exp(-sigma d),
 ///   T = (1-F)^2 a / (1 - F^2 a^2),  R = F + F a T.
 double plate_radiance(double n, double sigma_per_mm, double thickness_mm) {
     const double f = std::pow((n - 1.0) / (n + 1.0), 2), a = std::exp(-sigma_per_mm * thickness_mm);
@@ -27,9 +27,12 @@ TEST(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "slab.vdb");
     const Rendered rendered = render_text(
-        "[render]\nwidth = 24\nheight = 24\nsampler = \"independent\"\n[film]\nspectral = true\n[camera]\nkind = \"orthographic\"\n"
-        "position_mm = [0, 0, 30]\ntarget_mm = [0, 0, 0]\nup = [0, 1, 0]\nview_height_mm = 2.0\n[environment]\nkind = \"constant\"\n"
-        "[[object]]\nkind = \"opal\"\nfile = '" + (folder / "slab.vdb").string() + "'\n",
+        "[render]\nwidth = 24\nheight = 24\nsampler = \"independent\"\n[film]\nspectral = true\n[camera]\nkind = "
+        "\"orthographic\"\n"
+        "position_mm = [0, 0, 30]\ntarget_mm = [0, 0, 0]\nup = [0, 1, 0]\nview_height_mm = 2.0\n[environment]\nkind = "
+        "\"constant\"\n"
+        "[[object]]\nkind = \"opal\"\nfile = '" +
+            (folder / "slab.vdb").string() + "'\n",
         2048);
     const SpectrumTablesData tables = make_spectrum_tables();
     for (int bin = 1; bin < num_bins - 1; ++bin) {
@@ -37,7 +40,8 @@ TEST(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
         int count = 0;
         for (double w = bin_centre_nm(bin) - 5.0; w <= bin_centre_nm(bin) + 5.0; w += 0.1, ++count) {
             white += double(table_at(tables.view().white, float(w)));
-            expected += double(table_at(tables.view().white, float(w))) * plate_radiance(1.5, small.constants.sigma_a_per_mm.at(w), 1.0);
+            expected +=
+                double(table_at(tables.view().white, float(w))) * plate_radiance(1.5, small.constants.sigma_a_per_mm.at(w), 1.0);
         }
         const double n = double(rendered.outcome.totals.samples);
         const double mean = rendered.outcome.totals.radiance[std::size_t(bin)] / n;

@@ -36,8 +36,8 @@ TEST(Spectrum, WavelengthsFollowTheirDensity) {
     for (int lane = 0; lane < num_lanes; ++lane)
         EXPECT_TRUE(density_matches(
             [&](double u) { return double(sample_wavelengths(tables.view(), float(u), num_lanes).wavelength_nm[lane]); },
-            [&](double wavelength) { return double(tables.pdf[std::size_t(std::min(469, int(wavelength) - 360))]); }, 360.0, 830.0,
-            1'000'000, 47))
+            [&](double wavelength) { return double(tables.pdf[std::size_t(std::min(469, int(wavelength) - 360))]); }, 360.0,
+            830.0, 1'000'000, 47))
             << lane;
     double sum = 0.0;
     for (const float p : tables.pdf) {

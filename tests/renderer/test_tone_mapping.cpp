@@ -32,7 +32,8 @@ TEST(ToneMapping, ColoursOutsideTheGamutKeepTheirLuminance) {
     const Image display = tone_mapped(one_pixel(-0.1f, 0.4f, 0.1f), 0.0);
     for (const float c : display.pixels) EXPECT_GE(c, 0.0f);
     const auto linear = [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); };
-    const float luminance = 0.2126f * linear(display.pixels[0]) + 0.7152f * linear(display.pixels[1]) + 0.0722f * linear(display.pixels[2]);
+    const float luminance =
+        0.2126f * linear(display.pixels[0]) + 0.7152f * linear(display.pixels[1]) + 0.0722f * linear(display.pixels[2]);
     EXPECT_NEAR(luminance, 0.2126f * -0.1f + 0.7152f * 0.4f + 0.0722f * 0.1f, 1e-4f);
 }
 

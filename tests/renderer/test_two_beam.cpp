@@ -17,7 +17,8 @@ double exact_reflectance(double kappa_t, double delta_t) {
     const std::complex<double> gamma = std::sqrt(std::complex<double>(kappa_t * kappa_t - delta_t * delta_t, 0.0));
     const std::complex<double> sinh = std::sinh(gamma), cosh = std::cosh(gamma);
     if (std::abs(gamma) < 1e-9) return kappa_t * kappa_t / (1.0 + kappa_t * kappa_t);
-    const std::complex<double> r = kappa_t * kappa_t * sinh * sinh / (gamma * gamma * cosh * cosh + delta_t * delta_t * sinh * sinh);
+    const std::complex<double> r =
+        kappa_t * kappa_t * sinh * sinh / (gamma * gamma * cosh * cosh + delta_t * delta_t * sinh * sinh);
     return r.real();
 }
 
@@ -39,7 +40,8 @@ TEST(TwoBeam, OddsEqualThePrintedFormula) {
 TEST(TwoBeam, OddsAreContinuousAtTheBandEdgeAndNeverOverflow) {
     for (const float kappa_t : {0.1f, 1.0f, 3.0f})
         for (float delta_t = 0.99f * kappa_t; delta_t < 1.01f * kappa_t; delta_t += 1e-4f * kappa_t) {
-            const float here = block_reflection_odds(kappa_t, delta_t), next = block_reflection_odds(kappa_t, delta_t + 1e-4f * kappa_t);
+            const float here = block_reflection_odds(kappa_t, delta_t),
+                        next = block_reflection_odds(kappa_t, delta_t + 1e-4f * kappa_t);
             EXPECT_NEAR(next / here, 1.0f, 2e-3f);
         }
     EXPECT_TRUE(std::isfinite(block_reflection_odds(1.0e4f, 0.0f)));
@@ -52,7 +54,8 @@ struct Slab {
 
     Slab(double n_sphere, double layers) : crystal{250.0, n_sphere, 1.333} {
         const double g = std::sqrt(3.0) / (std::sqrt(2.0) * crystal.sphere_diameter_nm);
-        beam = {1.0f, float(g), float(permittivity_coefficient(crystal, g)), float(effective_index(crystal)), float(layers / g), 1.0f};
+        beam = {1.0f, float(g), float(permittivity_coefficient(crystal, g)), float(effective_index(crystal)), float(layers / g),
+                1.0f};
     }
     double reflectance(double wavelength_nm) const {
         const float lanes[num_lanes] = {float(wavelength_nm), float(wavelength_nm), float(wavelength_nm), float(wavelength_nm)};
@@ -61,8 +64,8 @@ struct Slab {
     }
 };
 
-/// Photonic band solver (MPB 1.11.1, fcc of touching spheres, gap at L): middle of the (111) stop band over the sphere diameter, and
-/// its relative width, for the pairs in water.
+/// Photonic band solver (MPB 1.11.1, fcc of touching spheres, gap at L): middle of the (111) stop band over the sphere diameter,
+/// and its relative width, for the pairs in water.
 const struct {
     double n_sphere, lambda_mid_over_d, relative_width;
 } band_solver[] = {{1.45, 2.318, 0.0142304}, {1.46, 2.33003, 0.0153341}, {1.42, 2.28184, 0.0108186}};
@@ -82,7 +85,8 @@ TEST(TwoBeam, BraggPeaksAgreeWithTheBandSolver) {
 
 TEST(TwoBeam, BandWidthsAgreeWithTheBandSolver) {
     for (const auto& row : band_solver) {
-        // In a crystal thick against the decay length the reflectance is 1 to single precision inside the band and falls below it at once outside.
+        // In a crystal thick against the decay length the reflectance is 1 to single precision inside the band and falls below it
+        // at once outside.
         const Slab slab(row.n_sphere, 20000.0);
         double first = 0.0, last = 0.0;
         for (double wavelength = 540.0; wavelength < 620.0; wavelength += 0.002)
@@ -112,7 +116,8 @@ TEST(TwoBeam, PileEqualsTheRandomWalk) {
                 reflected += position < 0 ? 1 : 0;
             }
             const double odds = blocks * r / (1.0 - r), expected = odds / (1.0 + odds);
-            EXPECT_NEAR(double(reflected) / walks, expected, 4.0 * std::sqrt(expected * (1.0 - expected) / walks)) << blocks << " " << r;
+            EXPECT_NEAR(double(reflected) / walks, expected, 4.0 * std::sqrt(expected * (1.0 - expected) / walks))
+                << blocks << " " << r;
         }
 }
 
