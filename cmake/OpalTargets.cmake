@@ -2,14 +2,16 @@
 
 find_program(OPAL_CCACHE ccache)
 if(OPAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${OPAL_CCACHE})
+  # Precompiled headers are cached only where ccache may ignore their time stamps.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${OPAL_CCACHE})
 endif()
 
 add_library(opal_compile_options INTERFACE)
 target_compile_options(opal_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Werror
   # Mathematics without errno and trap semantics vectorizes; values are unchanged.
-  -fno-math-errno -fno-trapping-math -fopenmp-simd)
+  -fno-math-errno -fno-trapping-math -fopenmp-simd
+  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 
 if(OPAL_AVX2 AND EXISTS /proc/cpuinfo)
   file(READ /proc/cpuinfo opal_cpuinfo)

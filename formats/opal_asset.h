@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/recipe.h"
 #include "formats/spectrum.h"
 
 namespace opal {
@@ -18,13 +19,19 @@ inline constexpr int opal_schema_version = 1;
 namespace grid_names {
 inline constexpr const char* grain_id = "grain_id";
 inline constexpr const char* shape = "shape";
+inline constexpr const char* weight = "weight";
+inline constexpr const char* sigma_a_scale = "sigma_a_scale";
+inline constexpr const char* sigma_s_rayleigh = "sigma_s_rayleigh_400nm";
+inline constexpr const char* sigma_s_mie = "sigma_s_mie";
+inline constexpr const char* orientation_rgb = "orientation_rgb";
+inline constexpr const char* grain_id_float = "grain_id_float";
 inline constexpr const char* sites = "sites";
 }  // namespace grid_names
 
 /// One site of the tessellation.
 struct Site {
     openvdb::Vec3d position_mm;
-    float weight_mm = 0.0f;  ///< additive weight w_i; larger starts to grow earlier
+    float weight_mm = 0.0f;  ///< additive weight w_i, larger starts to grow earlier; multiplicative: the factor, without unit
     std::int32_t grain = 0;  ///< grain it belongs to, from 1; 0 for a hidden site, which owns nothing
 };
 
@@ -39,17 +46,26 @@ struct OpalConstants {
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
     double sigma_s_mie_per_mm = 0.0;
     double mie_asymmetry = 0.8;
+    double stacking_fault_probability = 0.0;  ///< per layer
+    double mosaic_spread_deg = 0.0;           ///< standard deviation of lattice tilt inside a grain
 };
 
 /// The opal .vdb in memory: what the two programs hand over. Grids are in millimetres, Z up, voxel centres at integer index
 /// coordinates (OpenVDB's convention).
 struct OpalAsset {
-    openvdb::Int32Grid::Ptr grain_id;  ///< grain of each voxel whose centre is inside the shape, from 1; background 0
-    openvdb::FloatGrid::Ptr shape;     ///< level set of the outer surface, mm, negative inside
-    std::vector<Site> sites;           ///< exact geometry; site id = position in this list + 1
+    openvdb::Int32Grid::Ptr grain_id;  ///< grain of each voxel whose centre is inside the shape, from 1; background 0; null in a
+                                       ///< file of sites alone
+    openvdb::FloatGrid::Ptr shape;     ///< level set of the outer surface, mm, negative inside; null in a file of sites alone
+    openvdb::FloatGrid::Ptr weight;    ///< the weight field, mm, at its own resolution; null unless asked for
+    openvdb::FloatGrid::Ptr sigma_a_scale;                       ///< factor on sigma_a_per_mm; null where it does not vary
+    openvdb::FloatGrid::Ptr sigma_s_rayleigh_400nm;              ///< mm^-1; null where it does not vary
+    openvdb::FloatGrid::Ptr sigma_s_mie;                         ///< mm^-1; null where it does not vary
+    std::vector<Site> sites;                                     ///< exact geometry; site id = position in this list + 1
     std::vector<openvdb::math::Quat<float>> grain_orientations;  ///< (x, y, z, w), lattice -> world; element g - 1 is grain g's
     OpalConstants constants;
-    std::string recipe_toml;  ///< the resolved recipe; empty for files made elsewhere
+    TessellationKind tessellation = TessellationKind::additive;  ///< what the sites' weights mean
+    BoundaryNoiseRecipe boundary_noise;                          ///< what displaces the sites' cells; amplitude 0: nothing
+    std::string recipe_toml;                                     ///< the resolved recipe; empty for files made elsewhere
     std::uint64_t seed = 0;
     std::string program_version;
     int schema_version = 0;  ///< 0 for files made elsewhere

@@ -52,6 +52,13 @@ enum class RandomStream : std::uint32_t {
     render_paths = 5,
     foreign_orientations = 6,
     pixel_scramble = 7,
+    lattice_jitter = 8,
+    simplex_gradients = 9,
+    boundary_noise = 10,
+    field_noise = 11,
+    field_grains = 12,
+    site_orientations = 13,
+    bench = 14,
 };
 
 /// Block of four words for (seed, stream, index, block); the dimension is 4 * block + word.

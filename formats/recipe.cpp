@@ -6,37 +6,59 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/text.h"
+#include "formats/recipe_names.h"
 #include "formats/toml_reader.h"
 
 namespace opal {
 namespace {
 
-const std::vector<std::string> shape_names = {"ellipsoid", "sphere", "box", "cabochon", "mesh"};
-const std::vector<std::string> tessellation_names = {"additive", "voronoi"};
-const std::vector<std::string> weight_names = {"none", "perlin"};
-const std::vector<std::string> graph_names = {"apollonius", "delaunay"};
+constexpr std::int64_t max_sites = 50'000'000;
 const ExclusiveKeys exclusive_keys = {{"grains.voxel_size_mm", "grains.resolution"},
-                                      {"grains.sintering.probability", "grains.sintering.grains"}};
+                                      {"grains.sintering.probability", "grains.sintering.grains"},
+                                      {"grains.sintering.probability", "grains.sintering.mean_grain_mm"},
+                                      {"grains.sintering.grains", "grains.sintering.mean_grain_mm"}};
+
+namespace names = recipe_names;
 
 template <typename Enum>
-Enum enum_from(const std::vector<std::string>& names, const std::string& name) {
-    return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+Enum read_choice(TomlSection& section, const std::string& key, Enum fallback, const names::Names& allowed) {
+    return names::value<Enum>(allowed, section.choice(key, names::name(allowed, fallback), allowed));
 }
 
-template <typename Enum>
-const std::string& name_from(const std::vector<std::string>& names, Enum value) {
-    return names[static_cast<std::size_t>(value)];
+std::array<double, 3> read_direction(TomlSection& section, const std::string& key, const std::array<double, 3>& fallback) {
+    const std::array<double, 3> direction = section.vector3(key, fallback, NumberRange::between(-1.0e9, 1.0e9));
+    if (direction == std::array<double, 3>{0.0, 0.0, 0.0}) section.fail(key, "a direction of length 0 points nowhere");
+    return direction;
+}
+
+std::filesystem::path read_needed_file(TomlSection& section, const std::string& whose) {
+    const std::filesystem::path file = section.path("file");
+    if (file.empty()) section.fail("file", whose + " needs a file");
+    return file;
+}
+
+void read_bezier(TomlSection& section, ShapeRecipe& shape) {
+    shape.patches = read_choice(section, "patches", shape.patches, names::patches);
+    if (shape.patches == BezierPatches::teapot) {
+        shape.longest_mm = section.number("longest_mm", shape.longest_mm, NumberRange::positive(1.0e7));
+    } else {
+        shape.size_mm = section.vector3("size_mm", shape.size_mm, NumberRange::positive(1.0e7), true);
+        shape.girdle_mm =
+            section.number("girdle_mm", std::round(0.25e6 * shape.size_mm[2]) * 1.0e-6, NumberRange{0.0, shape.size_mm[2], true});
+        if (shape.girdle_mm >= shape.size_mm[2]) section.fail("girdle_mm", "leaves no height for the dome above it");
+    }
+    shape.chord_error_mm = section.number("chord_error_mm", 0.0, NumberRange::from_zero(1.0e7));
 }
 
 ShapeRecipe read_shape(TomlSection section) {
     ShapeRecipe shape;
     if (!section.has("kind")) section.fail("kind", "is needed: the shape has no default");
-    shape.kind = enum_from<ShapeKind>(shape_names, section.choice("kind", "", shape_names));
+    shape.kind = read_choice(section, "kind", shape.kind, names::shapes);
     if (shape.kind == ShapeKind::mesh) {
-        shape.mesh_file = section.path("file");
-        if (shape.mesh_file.empty()) section.fail("file", "a mesh shape needs a file");
+        shape.mesh_file = read_needed_file(section, "a mesh shape");
         shape.mesh_scale = section.number("scale", shape.mesh_scale, NumberRange::positive(1.0e9));
+    } else if (shape.kind == ShapeKind::bezier) {
+        read_bezier(section, shape);
     } else {
         shape.size_mm = section.vector3("size_mm", shape.size_mm, NumberRange::positive(1.0e7), true);
         if (shape.kind == ShapeKind::sphere) {
@@ -54,39 +76,111 @@ ShapeRecipe read_shape(TomlSection section) {
     return shape;
 }
 
-WeightRecipe read_weight(TomlSection section) {
-    WeightRecipe weight;
-    weight.kind = enum_from<WeightKind>(weight_names, section.choice("kind", "perlin", weight_names));
-    weight.amplitude = section.number("amplitude", weight.amplitude, NumberRange::from_zero(100.0));
-    weight.scale_mm = section.number("scale_mm", weight.scale_mm, NumberRange::between(1.0e-6, 1.0e7));
-    weight.octaves = static_cast<int>(section.integer("octaves", weight.octaves, 1, 16));
+SitesRecipe read_sites(TomlSection section) {
+    SitesRecipe sites;
+    sites.kind = read_choice(section, "kind", sites.kind, names::sites);
+    if (sites.kind == SiteKind::file) {
+        sites.file = read_needed_file(section, "sites of kind file");
+        sites.file_scale = section.number("scale", sites.file_scale, NumberRange::positive(1.0e9));
+    } else {
+        sites.region = read_choice(section, "region", sites.region, names::regions);
+    }
+    if (sites.kind == SiteKind::jittered_lattice)
+        sites.jitter = section.number("jitter", sites.jitter, NumberRange::between(0.0, 1.0));
     section.finish();
-    return weight;
+    return sites;
 }
 
-SinteringRecipe read_sintering(TomlSection section, std::int64_t num_sites) {
+WeightTerm read_weight_term(TomlSection section) {
+    WeightTerm term;
+    term.kind = read_choice(section, "kind", term.kind, names::weights);
+    const bool from_file = term.kind == WeightKind::grid || term.kind == WeightKind::csv;
+    term.amplitude =
+        section.number("amplitude", from_file ? 1.0 : 0.5,
+                       term.kind == WeightKind::none ? NumberRange::from_zero(100.0) : NumberRange::between(-1.0e6, 1.0e6));
+    term.scale_mm = section.number("scale_mm", term.scale_mm, NumberRange::between(1.0e-6, 1.0e7));
+    term.octaves = static_cast<int>(section.integer("octaves", term.octaves, 1, 16));
+    if (term.kind == WeightKind::linear) term.direction = read_direction(section, "direction", term.direction);
+    if (term.kind == WeightKind::radial)
+        term.center_mm = section.vector3("center_mm", term.center_mm, NumberRange::between(-1.0e7, 1.0e7));
+    if (from_file) term.file = read_needed_file(section, "a weight of kind " + names::name(names::weights, term.kind));
+    if (term.kind == WeightKind::grid) term.grid = section.text("grid", "");
+    section.finish();
+    return term;
+}
+
+std::vector<WeightTerm> read_weight(TomlSection& grains) {
+    if (!grains.is_array("weight")) return {read_weight_term(grains.section("weight"))};
+    std::vector<WeightTerm> terms;
+    for (TomlSection& section : grains.sections("weight")) terms.push_back(read_weight_term(section));
+    if (terms.empty()) grains.fail("weight", "a sum needs at least one term; kind = \"none\" leaves weights out");
+    return terms;
+}
+
+BoundaryNoiseRecipe read_boundary_noise(TomlSection section) {
+    BoundaryNoiseRecipe noise;
+    noise.amplitude_mm = section.number("amplitude_mm", noise.amplitude_mm, NumberRange::from_zero(1.0e7));
+    noise.scale_mm = section.number("scale_mm", noise.scale_mm, NumberRange::between(1.0e-6, 1.0e7));
+    noise.octaves = static_cast<int>(section.integer("octaves", noise.octaves, 1, 16));
+    section.finish();
+    return noise;
+}
+
+SinteringRecipe read_sintering(TomlSection section, const GrainsRecipe& grains) {
     SinteringRecipe sintering;
-    sintering.graph = enum_from<SinteringGraph>(graph_names, section.choice("graph", "apollonius", graph_names));
-    if (section.has("probability") && section.has("grains"))
-        section.fail("grains", "give either probability or grains, not both");
+    sintering.graph = read_choice(section, "graph", sintering.graph, names::graphs);
+    if (sintering.graph == SinteringGraph::lattice && grains.sites.kind != SiteKind::jittered_lattice)
+        section.fail("graph", "the lattice graph needs sites = { kind = \"jittered-lattice\" }");
+    int given = 0;
+    for (const char* key : {"probability", "grains", "mean_grain_mm"}) {
+        given += section.has(key) ? 1 : 0;
+        if (given > 1) section.fail(key, "give one of probability, grains and mean_grain_mm");
+    }
     sintering.probability = section.number("probability", sintering.probability, NumberRange::between(0.0, 1.0));
-    sintering.target_grains = section.has("grains") ? section.integer("grains", 1, 1, num_sites) : 0;
+    sintering.target_grains = section.has("grains") ? section.integer("grains", 1, 1, grains.num_sites) : 0;
+    sintering.mean_grain_mm =
+        section.has("mean_grain_mm") ? section.number("mean_grain_mm", 1.0, NumberRange::positive(1.0e7)) : 0.0;
+    sintering.preference = read_choice(section, "preference", sintering.preference, names::preferences);
+    if (sintering.preference == BondPreference::misorientation)
+        sintering.misorientation_deg =
+            section.number("misorientation_deg", sintering.misorientation_deg, NumberRange{0.0, 180.0, true});
+    if (sintering.preference == BondPreference::area && sintering.graph != SinteringGraph::apollonius)
+        section.fail("preference", "contact areas are known to graph = \"apollonius\" alone");
     section.finish();
     return sintering;
 }
 
+OrientationRecipe read_orientation(TomlSection section) {
+    OrientationRecipe orientation;
+    orientation.kind = read_choice(section, "kind", orientation.kind, names::orientations);
+    if (orientation.kind == OrientationKind::fibre) {
+        orientation.axis = read_direction(section, "axis", orientation.axis);
+        orientation.lattice = read_direction(section, "lattice", orientation.lattice);
+        orientation.spread_deg = section.number("spread_deg", orientation.spread_deg, NumberRange::between(0.0, 180.0));
+    }
+    if (orientation.kind == OrientationKind::table) orientation.file = read_needed_file(section, "orientations of kind table");
+    section.finish();
+    return orientation;
+}
+
 GrainsRecipe read_grains(TomlSection section, int& resolution) {
     GrainsRecipe grains;
-    grains.num_sites = section.integer("num_sites", grains.num_sites, 1, 50'000'000);
+    grains.sites = read_sites(section.section("sites"));
+    if (grains.sites.kind == SiteKind::file && section.has("num_sites"))
+        section.fail("num_sites", "the sites come from a file, which says how many there are");
+    grains.num_sites = section.integer("num_sites", grains.num_sites, 1, max_sites);
+    if (grains.sites.kind == SiteKind::file) grains.num_sites = max_sites;
     if (section.has("voxel_size_mm") && section.has("resolution"))
         section.fail("resolution", "give either voxel_size_mm or resolution, not both");
-    grains.voxel_size_mm = section.number("voxel_size_mm", 0.0, NumberRange{1.0e-4, 1.0e6, false});
-    resolution = static_cast<int>(section.integer("resolution", section.has("voxel_size_mm") ? 0 : 256, 4, 4096));
+    grains.voxel_size_mm = section.number("voxel_size_mm", 0.0, NumberRange{1.5e-5, 1.0e6, false});
+    resolution = static_cast<int>(section.integer("resolution", section.has("voxel_size_mm") ? 0 : 256, 4, 16384));
     grains.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
-    grains.tessellation =
-        enum_from<TessellationKind>(tessellation_names, section.choice("tessellation", "additive", tessellation_names));
-    grains.weight = read_weight(section.section("weight"));
-    grains.sintering = read_sintering(section.section("sintering"), grains.num_sites);
+    grains.tessellation = read_choice(section, "tessellation", grains.tessellation, names::tessellations);
+    grains.weight = read_weight(section);
+    grains.limit_weights = section.boolean("limit_weights", grains.limit_weights);
+    grains.boundary_noise = read_boundary_noise(section.section("boundary_noise"));
+    grains.sintering = read_sintering(section.section("sintering"), grains);
+    grains.orientation = read_orientation(section.section("orientation"));
     section.finish();
     return grains;
 }
@@ -99,8 +193,29 @@ CrystalRecipe read_crystal(TomlSection section) {
     crystal.n_medium = section.number("n_medium", crystal.n_medium, NumberRange::between(1.0, 4.0));
     crystal.coherence_length_um =
         section.number("coherence_length_um", crystal.coherence_length_um, NumberRange::between(0.5, 1.0e4));
+    crystal.stacking_fault_probability = section.number("stacking_fault_probability", 0.0, NumberRange::between(0.0, 1.0));
+    crystal.mosaic_spread_deg = section.number("mosaic_spread_deg", 0.0, NumberRange::between(0.0, 30.0));
     section.finish();
     return crystal;
+}
+
+FieldRecipe read_field(TomlSection section) {
+    FieldRecipe field;
+    field.kind = read_choice(section, "kind", section.has("kind") ? field.kind : FieldKind::constant, names::fields);
+    if (field.kind == FieldKind::grid) {
+        field.file = read_needed_file(section, "a field of kind grid");
+        field.grid = section.text("grid", "");
+    } else if (field.kind != FieldKind::constant) {
+        field.contrast = section.number("contrast", field.contrast, NumberRange::between(0.0, 1.0));
+    }
+    if (field.kind == FieldKind::noise || field.kind == FieldKind::layers)
+        field.scale_mm = section.number("scale_mm", field.scale_mm, NumberRange::between(1.0e-6, 1.0e7));
+    if (field.kind == FieldKind::noise) field.octaves = static_cast<int>(section.integer("octaves", field.octaves, 1, 16));
+    if (field.kind == FieldKind::layers) field.direction = read_direction(section, "direction", field.direction);
+    if (field.kind != FieldKind::constant)
+        field.voxel_size_mm = section.number("voxel_size_mm", 0.0, NumberRange::from_zero(1.0e6));
+    section.finish();
+    return field;
 }
 
 BaseColorRecipe read_base_color(TomlSection section) {
@@ -112,8 +227,27 @@ BaseColorRecipe read_base_color(TomlSection section) {
     color.sigma_s_rayleigh_400nm_per_mm = section.number("sigma_s_rayleigh_400nm_per_mm", 0.0, coefficient);
     color.sigma_s_mie_per_mm = section.number("sigma_s_mie_per_mm", 0.0, coefficient);
     color.mie_asymmetry = section.number("mie_asymmetry", color.mie_asymmetry, NumberRange::between(-0.99, 0.99));
+    color.sigma_a_field = read_field(section.section("sigma_a_field"));
+    color.sigma_s_rayleigh_field = read_field(section.section("sigma_s_rayleigh_field"));
+    color.sigma_s_mie_field = read_field(section.section("sigma_s_mie_field"));
     section.finish();
     return color;
+}
+
+OutputRecipe read_output(TomlSection section) {
+    OutputRecipe output;
+    if (section.has("grids")) {
+        output.grids.clear();
+        for (const std::string& name : section.choices("grids", names::grids))
+            output.grids.push_back(names::value<OutputGrid>(names::grids, name));
+        std::sort(output.grids.begin(), output.grids.end());
+        output.grids.erase(std::unique(output.grids.begin(), output.grids.end()), output.grids.end());
+        if (!output.has(OutputGrid::grain_id) && !output.has(OutputGrid::sites))
+            section.fail("grids", "a file needs grain_id or sites to hold an opal");
+    }
+    output.for_blender = section.boolean("for_blender", output.for_blender);
+    section.finish();
+    return output;
 }
 
 Recipe read_document(const TomlDocument& document) {
@@ -124,14 +258,9 @@ Recipe read_document(const TomlDocument& document) {
     recipe.grains = read_grains(root.section("grains"), recipe.resolution);
     recipe.crystal = read_crystal(root.section("crystal"));
     recipe.base_color = read_base_color(root.section("base_color"));
+    recipe.output = read_output(root.section("output"));
     root.finish();
     return recipe;
-}
-
-/// TOML tells integers from floats: a float keeps its point.
-std::string real(double value) {
-    const std::string text = fmt::format("{}", value);
-    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
 }  // namespace
@@ -144,40 +273,8 @@ Recipe parse_recipe(const std::string& text, const std::string& name, const std:
     return read_document(TomlDocument(text, name, overrides, exclusive_keys));
 }
 
-std::string recipe_to_toml(const Recipe& recipe) {
-    const ShapeRecipe& shape = recipe.shape;
-    std::string text = fmt::format("[shape]\nkind = {}\n", toml_quoted(name_from(shape_names, shape.kind)));
-    if (shape.kind == ShapeKind::mesh)
-        text += fmt::format("file = {}\nscale = {}\n", toml_quoted(shape.mesh_file.filename().string()), real(shape.mesh_scale));
-    else
-        text += fmt::format("size_mm = [{}, {}, {}]\n", real(shape.size_mm[0]), real(shape.size_mm[1]), real(shape.size_mm[2]));
-    if (shape.kind == ShapeKind::cabochon) text += fmt::format("girdle_mm = {}\n", real(shape.girdle_mm));
-
-    const GrainsRecipe& grains = recipe.grains;
-    text += fmt::format("\n[grains]\nnum_sites = {}\n", grains.num_sites);
-    text += recipe.resolution > 0 ? fmt::format("resolution = {}\n", recipe.resolution)
-                                  : fmt::format("voxel_size_mm = {}\n", real(grains.voxel_size_mm));
-    text += fmt::format("seed = {}\ntessellation = {}\n", grains.seed,
-                        toml_quoted(name_from(tessellation_names, grains.tessellation)));
-    text += fmt::format("weight = {{ kind = {}, amplitude = {}, scale_mm = {}, octaves = {} }}\n",
-                        toml_quoted(name_from(weight_names, grains.weight.kind)), real(grains.weight.amplitude),
-                        real(grains.weight.scale_mm), grains.weight.octaves);
-    text += fmt::format("sintering = {{ graph = {}, {} }}\n", toml_quoted(name_from(graph_names, grains.sintering.graph)),
-                        grains.sintering.target_grains > 0 ? fmt::format("grains = {}", grains.sintering.target_grains)
-                                                           : "probability = " + real(grains.sintering.probability));
-
-    const CrystalRecipe& crystal = recipe.crystal;
-    text += fmt::format("\n[crystal]\nsphere_diameter_nm = {}\nn_sphere = {}\nn_medium = {}\ncoherence_length_um = {}\n",
-                        real(crystal.sphere_diameter_nm), real(crystal.n_sphere), real(crystal.n_medium),
-                        real(crystal.coherence_length_um));
-
-    const BaseColorRecipe& color = recipe.base_color;
-    text += fmt::format(
-        "\n[base_color]\nabsorber = {}\nsigma_a_per_mm = {}\nsigma_s_rayleigh_400nm_per_mm = {}\nsigma_s_mie_per_mm = {}\n"
-        "mie_asymmetry = {}\n",
-        toml_quoted(std::filesystem::path(color.absorber).filename().string()), real(color.sigma_a_per_mm),
-        real(color.sigma_s_rayleigh_400nm_per_mm), real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry));
-    return text;
+bool OutputRecipe::has(OutputGrid grid) const {
+    return std::find(grids.begin(), grids.end(), grid) != grids.end();
 }
 
 }  // namespace opal

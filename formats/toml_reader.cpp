@@ -151,6 +151,10 @@ bool TomlSection::has(const std::string& key) const {
     return table_ && table_->contains(key);
 }
 
+bool TomlSection::is_array(const std::string& key) const {
+    return has(key) && table_->get(key)->is_array();
+}
+
 double TomlSection::number(const std::string& key, double fallback, const NumberRange& range) {
     const toml::node* node = find(key);
     if (!node) return fallback;

@@ -25,6 +25,8 @@ std::unique_ptr<Shape> make_shape(const ShapeRecipe& recipe) {
             return std::make_unique<CabochonShape>(size_mm, recipe.girdle_mm);
         case ShapeKind::mesh:
             return make_mesh_shape(recipe.mesh_file, recipe.mesh_scale);
+        case ShapeKind::bezier:
+            break;
     }
     throw std::logic_error("a shape kind without a shape");
 }

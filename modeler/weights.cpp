@@ -15,7 +15,7 @@
 namespace opal {
 
 std::vector<Site> weigh_sites(const SiteSet& sites, const GrainsRecipe& recipe) {
-    const WeightRecipe& weight = recipe.weight;
+    const WeightTerm& weight = recipe.weight.front();
     const bool weighted = recipe.tessellation == TessellationKind::additive && weight.kind == WeightKind::perlin;
     std::vector<Site> weighed(sites.positions_mm.size());
     tbb::parallel_for(std::size_t(0), weighed.size(), [&](std::size_t n) {

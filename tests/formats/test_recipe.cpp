@@ -33,11 +33,11 @@ TEST(Recipe, ResolvedTextReadsBackToTheSameText) {
 
 TEST(Recipe, OverridesSetAnyKey) {
     const Recipe recipe = parse(minimal, {"grains.num_sites=7", "base_color.absorber=neutral", "shape.size_mm=[1, 2, 3]",
-                                          "grains.weight.amplitude=0.25"});
+                                          "grains.weight[0].amplitude=0.25"});
     EXPECT_EQ(recipe.grains.num_sites, 7);
     EXPECT_EQ(recipe.base_color.absorber, "neutral");
     EXPECT_EQ(recipe.shape.size_mm[1], 2.0);
-    EXPECT_EQ(recipe.grains.weight.amplitude, 0.25);
+    EXPECT_EQ(recipe.grains.weight[0].amplitude, 0.25);
 }
 
 TEST(Recipe, AnOverrideTakesThePlaceOfItsAlternative) {

@@ -112,7 +112,7 @@ TEST(ApolloniusGraph, WithoutWeightsIsDelaunaysInTheInterior) {
     const auto shape = ellipsoid({6.0, 6.0, 6.0});
     const SiteSet set = sample_sites(*shape, 2000, 5);
     GrainsRecipe recipe;
-    recipe.weight.kind = WeightKind::none;
+    recipe.weight[0].kind = WeightKind::none;
     const std::vector<Site> sites = weigh_sites(set, recipe);
     const std::vector<char> hidden(sites.size(), 0);
     const NeighbourGraph apollonius = apollonius_graph(sites, hidden, *shape, set.spacing_mm());

@@ -120,7 +120,7 @@ TEST(Sintering, DelaunayGraphEqualsTheReference) {
     cube.size_mm = {10.0, 10.0, 10.0};
     const SiteSet set = sample_sites(*make_shape(cube), 27'000, 1);
     GrainsRecipe recipe;
-    recipe.weight.kind = WeightKind::none;
+    recipe.weight[0].kind = WeightKind::none;
     const std::vector<char> hidden(27'000, 0);
     const NeighbourGraph graph = delaunay_graph(weigh_sites(set, recipe), hidden);
     EXPECT_NEAR(2.0 * double(graph.size()) / 27'000.0, 15.2, 0.3);

@@ -46,8 +46,8 @@ TEST(Weights, KeepTheConditionOfVisibleSites) {
     ShapeRecipe shape;
     const SiteSet sites = sample_sites(*make_shape(shape), 800, 2);
     GrainsRecipe recipe;
-    recipe.weight.amplitude = 0.5;
-    recipe.weight.scale_mm = 1.5;
+    recipe.weight[0].amplitude = 0.5;
+    recipe.weight[0].scale_mm = 1.5;
     const std::vector<Site> weighed = weigh_sites(sites, recipe);
     const auto [least, most] = std::minmax_element(weighed.begin(), weighed.end(),
                                                    [](const Site& a, const Site& b) { return a.weight_mm < b.weight_mm; });
@@ -61,7 +61,7 @@ TEST(Weights, VoronoiAndNoneAreZero) {
     const SiteSet sites = sample_sites(*make_shape(ShapeRecipe()), 20, 2);
     GrainsRecipe voronoi, none;
     voronoi.tessellation = TessellationKind::voronoi;
-    none.weight.kind = WeightKind::none;
+    none.weight[0].kind = WeightKind::none;
     for (const GrainsRecipe& recipe : {voronoi, none})
         for (const Site& site : weigh_sites(sites, recipe)) EXPECT_EQ(site.weight_mm, 0.0f);
 }
@@ -69,7 +69,7 @@ TEST(Weights, VoronoiAndNoneAreZero) {
 TEST(Weights, NoiseScaleThatOverflowsIsRefused) {
     const SiteSet sites = sample_sites(*make_shape(ShapeRecipe()), 20, 2);
     GrainsRecipe recipe;
-    recipe.weight.scale_mm = 1.0e-320;
+    recipe.weight[0].scale_mm = 1.0e-320;
     EXPECT_NE(testing_tools::input_error_of([&] { weigh_sites(sites, recipe); }).find("scale_mm"), std::string::npos);
 }
 
