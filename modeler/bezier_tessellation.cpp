@@ -82,13 +82,7 @@ class PatchTriangles {
     PatchTriangles(const BezierPatch& patch, const PatchSplit& split, TriangleMesh& mesh)
         : split_(split), first_(static_cast<std::uint32_t>(mesh.vertices_mm.size())), mesh_(mesh) {
         for (int i = 0; i <= split.along_u; ++i)
-            for (int j = 0; j <= split.along_v; ++j) {
-                const BernsteinWeights u(double(split.along_u - i) / split.along_u, double(i) / split.along_u);
-                const BernsteinWeights v(double(split.along_v - j) / split.along_v, double(j) / split.along_v);
-                double point_mm[3];
-                bezier_sum(patch, u.value, v.value, point_mm);
-                mesh.vertices_mm.emplace_back(point_mm);
-            }
+            for (int j = 0; j <= split.along_v; ++j) mesh.vertices_mm.push_back(point_mm(patch, i, j));
         for (int i = 0; i < split.along_u; ++i)
             for (int j = 0; j < split.along_v; ++j) {
                 add(vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1));
@@ -97,6 +91,21 @@ class PatchTriangles {
     }
 
   private:
+    openvdb::Vec3d point_mm(const BezierPatch& patch, int i, int j) const {
+        // The weights' sum is 1 but for rounding: without this, a pole would be many points.
+        for (const bool far_side : {false, true}) {
+            if (i == (far_side ? split_.along_u : 0) && is_collapsed(edge_key(patch, false, far_side)))
+                return control(patch, far_side ? 3 : 0, 0);
+            if (j == (far_side ? split_.along_v : 0) && is_collapsed(edge_key(patch, true, far_side)))
+                return control(patch, 0, far_side ? 3 : 0);
+        }
+        const BernsteinWeights u(double(split_.along_u - i) / split_.along_u, double(i) / split_.along_u);
+        const BernsteinWeights v(double(split_.along_v - j) / split_.along_v, double(j) / split_.along_v);
+        double sum_mm[3];
+        bezier_sum(patch, u.value, v.value, sum_mm);
+        return openvdb::Vec3d(sum_mm);
+    }
+
     std::uint32_t vertex(int i, int j) const { return first_ + static_cast<std::uint32_t>(i * (split_.along_v + 1) + j); }
 
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
