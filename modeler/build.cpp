@@ -141,8 +141,8 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
     const double voxel_size_mm = resolve_voxel_size_mm(recipe, shape->bounds_mm());
 
-    const SiteSet sites = stages.run(
-        "sites", [&] { return sample_sites(*shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
+    const SiteSet sites = stages.run("sites", [&] { return sample_sites(*shape, recipe.grains); });
+    for (const std::string& warning : sites.warnings) stages.warn(warning);
     describe_sites(sites, report);
     asset.sites = stages.run("weights", [&] { return weigh_sites(sites, recipe.grains); });
     const std::vector<char> hidden =
