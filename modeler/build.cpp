@@ -110,6 +110,7 @@ void describe_sintering(const NeighbourGraph& graph, const std::vector<char>& hi
 
 void describe_grid(const openvdb::Int32Grid& grain_id, BuildReport& report) {
     report.voxels = grain_id.activeVoxelCount();
+    report.voxels_in_box = grain_id.evalActiveVoxelBoundingBox().volume();
     report.leaves = grain_id.tree().leafCount();
     report.tiles = grain_id.tree().activeTileCount();
 }
@@ -125,20 +126,24 @@ void require_voxels(const openvdb::Int32Grid& grain_id, const openvdb::BBoxd& bo
 
 }  // namespace
 
-BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
+BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, const std::optional<SceneFit>& scene_fit) {
     initialize_openvdb();
+    Recipe recipe = asked_for;
     BuiltOpal built;
     OpalAsset& asset = built.asset;
     BuildReport& report = built.report;
     StageRunner stages(report, listener);
 
-    asset.constants = constants_of(recipe);
-    asset.seed = recipe.grains.seed;
-    asset.recipe_toml = recipe_to_toml(recipe);
     asset.program_version = version_report()["opal"].get<std::string>();
     asset.schema_version = opal_schema_version;
 
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
+    if (scene_fit)
+        report.scene_needs =
+            fit_to_scene(recipe, scene_fit->scene, scene_fit->output, shape->bounds_mm(), scene_fit->accepted_error_pixels);
+    asset.constants = constants_of(recipe);
+    asset.seed = recipe.grains.seed;
+    asset.recipe_toml = recipe_to_toml(recipe);
     const double voxel_size_mm = resolve_voxel_size_mm(recipe, shape->bounds_mm());
 
     const SiteSet sites = stages.run(

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "formats/command.h"
@@ -38,6 +39,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
                       {"mean_degree", report.mean_degree},
                       {"grains", asset.num_grains()},
                       {"voxels", report.voxels},
+                      {"voxels_in_box", report.voxels_in_box},
                       {"leaves", report.leaves},
                       {"tiles", report.tiles},
                       {"largest_grain_fraction", report.largest_grain_fraction}};
@@ -49,6 +51,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
     json["bond_probability"] = report.bond_probability;
     json["percolation_threshold"] =
         report.percolation_threshold ? nlohmann::json(*report.percolation_threshold) : nlohmann::json();
+    if (report.scene_needs) json["for_scene"] = scene_needs_to_json(*report.scene_needs);
     json["warnings"] = report.warnings;
     json["versions"] = version_report();
     json["seed"] = asset.seed;
@@ -62,8 +65,12 @@ std::string report_summary(const BuildReport& report, const OpalAsset& asset) {
         asset.sites.size(), report.hidden_sites, mean_grain_diameter_mm(asset), 100.0 * report.largest_grain_fraction);
     text +=
         fmt::format("bonds    {} of {} kept ({:.2f} neighbours per site)\n", report.kept_bonds, report.bonds, report.mean_degree);
-    text += fmt::format("voxels   {} of {:.4g} mm inside the shape, in {} leaves and {} tiles\n", report.voxels,
-                        asset.grain_id->voxelSize().x(), report.leaves, report.tiles);
+    text += fmt::format(
+        "voxels   {} of {:.4g} mm inside the shape ({:.0f} % of its box), in {} leaves and {} tiles\n", report.voxels,
+        asset.grain_id->voxelSize().x(),
+        100.0 * static_cast<double>(report.voxels) / static_cast<double>(std::max<std::uint64_t>(1, report.voxels_in_box)),
+        report.leaves, report.tiles);
+    if (report.scene_needs) text += scene_needs_summary(*report.scene_needs);
     text += fmt::format("time     {}, at most {:.0f} MB of memory\n", format_duration(report.total_seconds()),
                         static_cast<double>(peak_memory_bytes()) / 1.0e6);
     return text;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/opal_asset.h"
+#include "modeler/scene_needs.h"
 
 namespace opal {
 
@@ -32,9 +33,12 @@ struct BuildReport {
     double largest_grain_fraction = 0.0;          ///< of the visible sites
     std::optional<double> percolation_threshold;  ///< estimate for this graph
 
-    std::uint64_t voxels = 0;  ///< inside the shape
-    std::uint64_t leaves = 0;  ///< of grain_id
-    std::uint64_t tiles = 0;   ///< active ones of grain_id
+    std::uint64_t voxels = 0;         ///< inside the shape
+    std::uint64_t voxels_in_box = 0;  ///< of the box around them
+    std::uint64_t leaves = 0;         ///< of grain_id
+    std::uint64_t tiles = 0;          ///< active ones of grain_id
+
+    std::optional<SceneNeeds> scene_needs;  ///< where the opal was modelled for a scene
 
     double total_seconds() const;
 };

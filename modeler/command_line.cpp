@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "formats/atomic_file.h"
 #include "formats/command.h"
@@ -14,6 +15,7 @@
 #include "formats/opal_asset.h"
 #include "formats/recipe.h"
 #include "formats/report.h"
+#include "formats/scene.h"
 #include "formats/text.h"
 #include "modeler/build.h"
 #include "modeler/info.h"
@@ -26,6 +28,8 @@ struct BuildArguments {
     std::string output_file;
     std::vector<std::string> overrides;
     std::string report_file;
+    std::string scene_file;
+    double accepted_error_pixels = 1.0;
     int threads = 0;
 };
 
@@ -40,6 +44,7 @@ Exit codes: 0 success, 2 bad input, 1 other failures.
 Examples:
   opal-model build recipe.toml -o opal.vdb
   opal-model build recipe.toml -o opal.vdb --set grains.num_sites=2000 --set shape.size_mm=[14.0,10.0,5.0] --report report.json
+  opal-model build recipe.toml -o opal.vdb --for scene.toml
   opal-model info opal.vdb
   opal-model check opal.vdb)";
 
@@ -60,7 +65,10 @@ int run_build(const BuildArguments& arguments) {
         thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                              static_cast<std::size_t>(arguments.threads));
     catch_interrupts();
-    BuiltOpal built = build_opal(read_recipe(arguments.recipe_file, arguments.overrides), say);
+    std::optional<SceneFit> scene_fit;
+    if (!arguments.scene_file.empty())
+        scene_fit = SceneFit{read_scene(arguments.scene_file, {}), output, arguments.accepted_error_pixels};
+    BuiltOpal built = build_opal(read_recipe(arguments.recipe_file, arguments.overrides), say, scene_fit);
 
     throw_if_interrupted();
     say("write");
@@ -121,6 +129,16 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
     build->add_option("--set", arguments.overrides, "override a recipe key, e.g. grains.num_sites=1000; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
+    build
+        ->add_option("--for", arguments.scene_file,
+                     "model no more than this scene's picture shows: voxels from its pixels' size at the gem, no fields or grids "
+                     "without effect; the report says what was saved and which error is accepted")
+        ->type_name("SCENE.toml");
+    build
+        ->add_option("--for-error", arguments.accepted_error_pixels,
+                     "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
+        ->check(CLI::Range(0.01, 100.0))
+        ->type_name("PIXELS");
     build->add_option("--threads", arguments.threads, "threads to use (default: all); the result is the same for any number")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
