@@ -135,7 +135,7 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
                      "without effect; the report says what was saved and which error is accepted")
         ->type_name("SCENE.toml");
     build
-        ->add_option("--for-error", arguments.accepted_error_pixels,
+        ->add_option("--for-pixels", arguments.accepted_error_pixels,
                      "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
         ->check(CLI::Range(0.01, 100.0))
         ->type_name("PIXELS");
