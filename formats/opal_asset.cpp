@@ -16,6 +16,7 @@
 #include <fstream>
 
 #include "formats/atomic_file.h"
+#include "formats/bezier_patch_text.h"
 #include "formats/error.h"
 #include "formats/opal_asset_io.h"
 #include "formats/random.h"
@@ -113,6 +114,7 @@ openvdb::MetaMap file_metadata(const OpalAsset& asset) {
     number(metadata_keys::sigma_s_rayleigh, constants.sigma_s_rayleigh_400nm_per_mm);
     number(metadata_keys::sigma_s_mie, constants.sigma_s_mie_per_mm);
     number(metadata_keys::mie_asymmetry, constants.mie_asymmetry);
+    if (!asset.bezier_patches.empty()) text(metadata_keys::bezier_patches, bezier_patches_to_text(asset.bezier_patches));
     return metadata;
 }
 
@@ -163,6 +165,15 @@ OpalConstants read_constants(const MetadataReader& reader, const std::string& fi
     constants.sigma_s_mie_per_mm = reader.number(metadata_keys::sigma_s_mie, 0.0, 1.0e9);
     constants.mie_asymmetry = reader.number(metadata_keys::mie_asymmetry, -0.9999, 0.9999);
     return constants;
+}
+
+std::vector<BezierPatch> read_bezier_patches(const MetadataReader& reader, const std::string& file) {
+    if (!reader.has(metadata_keys::bezier_patches)) return {};
+    try {
+        return bezier_patches_from_text(reader.text(metadata_keys::bezier_patches));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: metadata '{}': {}", file, metadata_keys::bezier_patches, error.what()));
+    }
 }
 
 /// Clients may leave ids in the background or in inactive voxels, and zeros in active ones; the walk through the grains reads
@@ -308,6 +319,7 @@ OpalAsset checked_asset(const RawOpalFile& raw, const std::string& file, const R
             throw InputError(fmt::format("{}: opal schema {} is not known; this program reads 1 to {}", file,
                                          asset.schema_version, opal_schema_version));
         asset.constants = read_constants(reader, file);
+        asset.bezier_patches = read_bezier_patches(reader, file);
         asset.recipe_toml = reader.text(metadata_keys::recipe);
         asset.program_version = reader.text(metadata_keys::program_version);
         asset.seed = static_cast<std::uint64_t>(reader.integer64(metadata_keys::seed));

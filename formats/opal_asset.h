@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/bezier_patch.h"
 #include "formats/recipe.h"
 #include "formats/spectrum.h"
 
@@ -62,6 +63,7 @@ struct OpalAsset {
     openvdb::FloatGrid::Ptr sigma_s_mie;                         ///< mm^-1; null where it does not vary
     std::vector<Site> sites;                                     ///< exact geometry; site id = position in this list + 1
     std::vector<openvdb::math::Quat<float>> grain_orientations;  ///< (x, y, z, w), lattice -> world; element g - 1 is grain g's
+    std::vector<BezierPatch> bezier_patches;  ///< the exact surface where the shape has one, outward; else empty
     OpalConstants constants;
     TessellationKind tessellation = TessellationKind::additive;  ///< what the sites' weights mean
     BoundaryNoiseRecipe boundary_noise;                          ///< what displaces the sites' cells; amplitude 0: nothing

@@ -30,6 +30,7 @@ inline constexpr const char* sigma_a_per_mm = "sigma_a_per_mm";
 inline constexpr const char* sigma_s_rayleigh = "sigma_s_rayleigh_400nm_per_mm";
 inline constexpr const char* sigma_s_mie = "sigma_s_mie_per_mm";
 inline constexpr const char* mie_asymmetry = "mie_asymmetry";
+inline constexpr const char* bezier_patches = "bezier_patches";
 }  // namespace metadata_keys
 
 /// A .vdb as it lies on disk, before anything is asked of it.

@@ -163,6 +163,7 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     describe_sintering(graph, hidden, sintering, stages, report);
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
+    asset.bezier_patches = shape->bezier_patches();
     asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
     asset.grain_id = stages.run("labelling", [&] { return label_voxels(asset.sites, sintering.grain_of_site, *asset.shape); });
     require_voxels(*asset.grain_id, shape->bounds_mm());

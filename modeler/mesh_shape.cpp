@@ -25,13 +25,15 @@ constexpr double uncertain_sign = 0.1;
 
 class MeshShape final : public Shape {
   public:
-    explicit MeshShape(TriangleMesh solid) : solid_(std::move(solid)), distance_(solid_) {
+    MeshShape(TriangleMesh solid, std::vector<BezierPatch> exact_surface)
+        : solid_(std::move(solid)), exact_surface_(std::move(exact_surface)), distance_(solid_) {
         for (const openvdb::Vec3d& vertex_mm : solid_.vertices_mm) bounds_mm_.expand(vertex_mm);
     }
 
     double signed_distance_mm(const openvdb::Vec3d& point_mm) const override { return distance_.signed_distance_mm(point_mm); }
     bool contains(const openvdb::Vec3d& point_mm) const override { return distance_.contains(point_mm); }
     openvdb::BBoxd bounds_mm() const override { return bounds_mm_; }
+    std::vector<BezierPatch> bezier_patches() const override { return exact_surface_; }
 
     openvdb::FloatGrid::Ptr level_set(double voxel_size_mm) const override {
         std::vector<openvdb::Vec3s> vertices_in_voxels;
@@ -73,6 +75,7 @@ class MeshShape final : public Shape {
     }
 
     TriangleMesh solid_;
+    std::vector<BezierPatch> exact_surface_;
     MeshDistance distance_;
     openvdb::BBoxd bounds_mm_;
 };
@@ -80,7 +83,11 @@ class MeshShape final : public Shape {
 }  // namespace
 
 std::unique_ptr<Shape> make_mesh_shape(const std::filesystem::path& file, double mm_per_unit) {
-    return std::make_unique<MeshShape>(solid_from_triangles(read_mesh_file(file, mm_per_unit), file.string()));
+    return make_solid_shape(solid_from_triangles(read_mesh_file(file, mm_per_unit), file.string()));
+}
+
+std::unique_ptr<Shape> make_solid_shape(TriangleMesh solid, std::vector<BezierPatch> exact_surface) {
+    return std::make_unique<MeshShape>(std::move(solid), std::move(exact_surface));
 }
 
 }  // namespace opal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "modeler/mesh_solid.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -9,27 +8,23 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
-#include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 
-#include <array>
-#include <utility>
+#include <iterator>
+#include <vector>
 
 #include "formats/error.h"
+#include "modeler/cgal_surface.h"
+#include "modeler/mesh_places.h"
+#include "modeler/mesh_union.h"
 
 namespace opal {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using Surface = CGAL::Surface_mesh<Point>;
+using cgal::Point;
+using cgal::Surface;
 namespace processing = CGAL::Polygon_mesh_processing;
-
-std::string describe(const Point& p) {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g}) mm", p.x(), p.y(), p.z());
-}
 
 Surface join_triangles(const TriangleMesh& soup, const std::string& name) {
     std::vector<Point> points;
@@ -48,24 +43,30 @@ Surface join_triangles(const TriangleMesh& soup, const std::string& name) {
     return surface;
 }
 
+/// The middle of a hole's border.
+Point middle_of_hole(const Surface& surface, Surface::Halfedge_index border) {
+    openvdb::Vec3d sum(0.0);
+    std::size_t vertices = 0;
+    for (const auto vertex : CGAL::vertices_around_face(border, surface)) {
+        const Point& p = surface.point(vertex);
+        sum += openvdb::Vec3d(p.x(), p.y(), p.z());
+        ++vertices;
+    }
+    sum /= static_cast<double>(vertices);
+    return {sum.x(), sum.y(), sum.z()};
+}
+
 void require_closed(const Surface& surface, const std::string& name) {
     if (CGAL::is_closed(surface)) return;
     std::size_t border_edges = 0;
     for (const auto edge : surface.edges()) border_edges += surface.is_border(edge) ? 1 : 0;
     std::vector<Surface::Halfedge_index> holes;
     processing::extract_boundary_cycles(surface, std::back_inserter(holes));
-    throw InputError(fmt::format("mesh {}: is open, it must be closed: {} border edge{} around {} hole{}, the first one at {}",
-                                 name, border_edges, border_edges == 1 ? "" : "s", holes.size(), holes.size() == 1 ? "" : "s",
-                                 describe(surface.point(surface.target(holes.front())))));
-}
-
-void require_simple(const Surface& surface, const std::string& name) {
-    std::vector<std::pair<Surface::Face_index, Surface::Face_index>> pairs;
-    processing::self_intersections(surface, std::back_inserter(pairs));
-    if (pairs.empty()) return;
-    const Point place = surface.point(surface.target(surface.halfedge(pairs.front().first)));
-    throw InputError(fmt::format("mesh {}: intersects itself: {} pair{} of triangles cross, the first one near {}", name,
-                                 pairs.size(), pairs.size() == 1 ? "" : "s", describe(place)));
+    std::vector<Point> places;
+    for (const auto hole : holes) places.push_back(middle_of_hole(surface, hole));
+    throw InputError(fmt::format("mesh {}: is open, it must be closed: {} border edge{} around {} hole{} at {}", name,
+                                 border_edges, border_edges == 1 ? "" : "s", holes.size(), holes.size() == 1 ? "" : "s",
+                                 list_places(places)));
 }
 
 TriangleMesh to_triangles(const Surface& surface) {
@@ -90,7 +91,7 @@ TriangleMesh to_triangles(const Surface& surface) {
 TriangleMesh solid_from_triangles(const TriangleMesh& soup, const std::string& name) {
     Surface surface = join_triangles(soup, name);
     require_closed(surface, name);
-    require_simple(surface, name);
+    unite_crossing_parts(surface, name);
     processing::orient_to_bound_a_volume(surface);
     if (!(processing::volume(surface) > 0.0)) throw InputError(fmt::format("mesh {}: bounds no volume", name));
     return to_triangles(surface);

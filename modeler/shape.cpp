@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "modeler/shape.h"
 
+#include "modeler/bezier_shape.h"
 #include "modeler/box_shape.h"
 #include "modeler/cabochon_shape.h"
 #include "modeler/ellipsoid_shape.h"
@@ -26,7 +27,7 @@ std::unique_ptr<Shape> make_shape(const ShapeRecipe& recipe) {
         case ShapeKind::mesh:
             return make_mesh_shape(recipe.mesh_file, recipe.mesh_scale);
         case ShapeKind::bezier:
-            break;
+            return make_bezier_shape(recipe);
     }
     throw std::logic_error("a shape kind without a shape");
 }

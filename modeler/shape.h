@@ -4,13 +4,15 @@
 #include <openvdb/openvdb.h>
 
 #include <memory>
+#include <vector>
 
+#include "formats/bezier_patch.h"
 #include "formats/recipe.h"
 
 namespace opal {
 
-/// The solid that becomes opal. Lengths are millimetres, Z is up. Every primitive is centred on the z axis and rests on the
-/// ground: its lowest point has z = 0. A mesh stays where its file puts it.
+/// The solid that becomes opal. Lengths are millimetres, Z is up. Primitives and Bezier shapes are centred on the z axis and rest
+/// on the ground: their lowest point has z = 0. A mesh stays where its file puts it.
 class Shape {
   public:
     virtual ~Shape() = default;
@@ -23,6 +25,8 @@ class Shape {
     virtual openvdb::BBoxd bounds_mm() const = 0;
     /// The surface as a level set named `shape`: distances in mm in a band of `level_set_half_width` voxels to both sides.
     virtual openvdb::FloatGrid::Ptr level_set(double voxel_size_mm) const;
+    /// The surface as Bezier patches, for shapes that are made of them; else empty.
+    virtual std::vector<BezierPatch> bezier_patches() const { return {}; }
 };
 
 /// The shape that a recipe describes. Throws InputError for sizes that leave nothing of it and for meshes that bound no solid.
