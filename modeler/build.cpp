@@ -83,6 +83,8 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
+    constants.stacking_fault_probability = recipe.crystal.stacking_fault_probability;
+    constants.mosaic_spread_deg = recipe.crystal.mosaic_spread_deg;
     return constants;
 }
 
@@ -123,23 +125,32 @@ void require_voxels(const openvdb::Int32Grid& grain_id, const openvdb::BBoxd& bo
                     grain_id.voxelSize().x(), size_mm.x(), size_mm.y(), size_mm.z()));
 }
 
+/// A file of sites alone takes no voxels, whatever their size.
+bool needs_voxels(const OutputRecipe& output) {
+    return output.grids != std::vector<OutputGrid>{OutputGrid::sites};
+}
+
 }  // namespace
 
 BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     initialize_openvdb();
+    if (recipe.output.for_blender && !recipe.output.has(OutputGrid::grain_id))
+        throw InputError("output.for_blender: its display twins are made from grain_id, which output.grids leaves out");
     BuiltOpal built;
     OpalAsset& asset = built.asset;
     BuildReport& report = built.report;
     StageRunner stages(report, listener);
 
     asset.constants = constants_of(recipe);
+    asset.tessellation = recipe.grains.tessellation;
+    asset.boundary_noise = recipe.grains.boundary_noise;
     asset.seed = recipe.grains.seed;
     asset.recipe_toml = recipe_to_toml(recipe);
     asset.program_version = version_report()["opal"].get<std::string>();
     asset.schema_version = opal_schema_version;
 
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
-    const double voxel_size_mm = resolve_voxel_size_mm(recipe, shape->bounds_mm());
+    const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
     const SiteSet sites = stages.run(
         "sites", [&] { return sample_sites(*shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
@@ -158,10 +169,17 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     describe_sintering(graph, hidden, sintering, stages, report);
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
-    asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
-    asset.grain_id = stages.run("labelling", [&] { return label_voxels(asset.sites, sintering.grain_of_site, *asset.shape); });
-    require_voxels(*asset.grain_id, shape->bounds_mm());
-    describe_grid(*asset.grain_id, report);
+    if (needs_voxels(recipe.output)) {
+        asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
+        const auto label = [&](const openvdb::FloatGrid& level_set) {
+            return label_voxels(asset.sites, sintering.grain_of_site, level_set);
+        };
+        if (recipe.output.has(OutputGrid::grain_id)) {
+            asset.grain_id = stages.run("labelling", [&] { return label(*asset.shape); });
+            require_voxels(*asset.grain_id, shape->bounds_mm());
+            describe_grid(*asset.grain_id, report);
+        }
+    }
 
     asset.grain_orientations = stages.run("orientations", [&] {
         std::vector<openvdb::math::Quat<float>> orientations;
