@@ -8,7 +8,9 @@
 
 #include "formats/command.h"
 #include "formats/error.h"
+#include "formats/field_summary.h"
 #include "formats/report.h"
+#include "modeler/base_color_fields.h"
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
 #include "modeler/neighbour_graph.h"
@@ -130,6 +132,11 @@ bool needs_voxels(const OutputRecipe& output) {
     return output.grids != std::vector<OutputGrid>{OutputGrid::sites};
 }
 
+bool has_fields(const BaseColorRecipe& color) {
+    return color.sigma_a_field.kind != FieldKind::constant || color.sigma_s_rayleigh_field.kind != FieldKind::constant ||
+           color.sigma_s_mie_field.kind != FieldKind::constant;
+}
+
 }  // namespace
 
 BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
@@ -169,6 +176,8 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     describe_sintering(graph, hidden, sintering, stages, report);
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
+    if (has_fields(recipe.base_color) && !recipe.output.has(OutputGrid::fields))
+        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
     if (needs_voxels(recipe.output)) {
         asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
         const auto label = [&](const openvdb::FloatGrid& level_set) {
@@ -179,6 +188,11 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
             require_voxels(*asset.grain_id, shape->bounds_mm());
             describe_grid(*asset.grain_id, report);
         }
+        if (recipe.output.has(OutputGrid::fields) && has_fields(recipe.base_color))
+            stages.run("fields", [&] {
+                add_base_color_fields(recipe.base_color, *shape, label, asset);
+                return varying_coefficients(asset).size();
+            });
     }
 
     asset.grain_orientations = stages.run("orientations", [&] {
