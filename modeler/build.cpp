@@ -8,7 +8,9 @@
 
 #include "formats/command.h"
 #include "formats/error.h"
+#include "formats/field_summary.h"
 #include "formats/report.h"
+#include "modeler/base_color_fields.h"
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
 #include "modeler/neighbour_graph.h"
@@ -83,6 +85,8 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
+    constants.stacking_fault_probability = recipe.crystal.stacking_fault_probability;
+    constants.mosaic_spread_deg = recipe.crystal.mosaic_spread_deg;
     return constants;
 }
 
@@ -140,11 +144,23 @@ void require_voxels(const openvdb::Int32Grid& grain_id, const openvdb::BBoxd& bo
                     grain_id.voxelSize().x(), size_mm.x(), size_mm.y(), size_mm.z()));
 }
 
+/// A file of sites alone takes no voxels, whatever their size.
+bool needs_voxels(const OutputRecipe& output) {
+    return output.grids != std::vector<OutputGrid>{OutputGrid::sites};
+}
+
+bool has_fields(const BaseColorRecipe& color) {
+    return color.sigma_a_field.kind != FieldKind::constant || color.sigma_s_rayleigh_field.kind != FieldKind::constant ||
+           color.sigma_s_mie_field.kind != FieldKind::constant;
+}
+
 }  // namespace
 
 BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, const std::optional<SceneFit>& scene_fit) {
     initialize_openvdb();
     Recipe recipe = asked_for;
+    if (recipe.output.for_blender && !recipe.output.has(OutputGrid::grain_id))
+        throw InputError("output.for_blender: its display twins are made from grain_id, which output.grids leaves out");
     BuiltOpal built;
     OpalAsset& asset = built.asset;
     BuildReport& report = built.report;
@@ -162,7 +178,7 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     asset.tessellation = recipe.grains.tessellation;
     asset.boundary_noise = recipe.grains.boundary_noise;
     asset.recipe_toml = recipe_to_toml(recipe);
-    const double voxel_size_mm = resolve_voxel_size_mm(recipe, shape->bounds_mm());
+    const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
     const SiteSet sites = stages.run(
         "sites", [&] { return sample_sites(*shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
@@ -182,13 +198,25 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
     asset.bezier_patches = shape->bezier_patches();
-    asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
-    asset.grain_id = stages.run("labelling", [&] {
-        return label_voxels(asset.sites, sintering.grain_of_site, *asset.shape,
-                            {asset.tessellation, asset.boundary_noise, asset.seed});
-    });
-    require_voxels(*asset.grain_id, shape->bounds_mm());
-    describe_grid(*asset.grain_id, report);
+    if (has_fields(recipe.base_color) && !recipe.output.has(OutputGrid::fields))
+        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
+    if (needs_voxels(recipe.output)) {
+        asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
+        const auto label = [&](const openvdb::FloatGrid& level_set) {
+            return label_voxels(asset.sites, sintering.grain_of_site, level_set,
+                                {asset.tessellation, asset.boundary_noise, asset.seed});
+        };
+        if (recipe.output.has(OutputGrid::grain_id)) {
+            asset.grain_id = stages.run("labelling", [&] { return label(*asset.shape); });
+            require_voxels(*asset.grain_id, shape->bounds_mm());
+            describe_grid(*asset.grain_id, report);
+        }
+        if (recipe.output.has(OutputGrid::fields) && has_fields(recipe.base_color))
+            stages.run("fields", [&] {
+                add_base_color_fields(recipe.base_color, *shape, label, asset);
+                return varying_coefficients(asset).size();
+            });
+    }
 
     asset.grain_orientations = stages.run("orientations", [&] {
         std::vector<openvdb::math::Quat<float>> orientations;

@@ -19,10 +19,20 @@ double BuildReport::total_seconds() const {
 }
 
 double mean_grain_diameter_mm(const OpalAsset& asset) {
-    if (asset.num_grains() == 0) return 0.0;
+    if (asset.num_grains() == 0 || !asset.grain_id) return 0.0;
     const double volume_mm3 = static_cast<double>(asset.grain_id->activeVoxelCount()) * asset.grain_id->voxelSize().product();
     return std::cbrt(6.0 * volume_mm3 / (units::pi * static_cast<double>(asset.num_grains())));
 }
+
+namespace {
+
+/// Without voxels to count, from the volume that was estimated while sites were sampled.
+double mean_diameter_mm(const BuildReport& report, const OpalAsset& asset) {
+    if (asset.grain_id) return mean_grain_diameter_mm(asset);
+    return std::cbrt(6.0 * report.shape_volume_mm3 / (units::pi * static_cast<double>(asset.num_grains())));
+}
+
+}  // namespace
 
 nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset) {
     nlohmann::json seconds = nlohmann::json::object();
@@ -44,8 +54,8 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
                       {"tiles", report.tiles},
                       {"largest_grain_fraction", report.largest_grain_fraction}};
     json["shape_volume_mm3"] = report.shape_volume_mm3;
-    json["voxel_size_mm"] = asset.grain_id->voxelSize().x();
-    json["mean_grain_diameter_mm"] = mean_grain_diameter_mm(asset);
+    json["voxel_size_mm"] = asset.grain_id ? nlohmann::json(asset.grain_id->voxelSize().x()) : nlohmann::json();
+    json["mean_grain_diameter_mm"] = mean_diameter_mm(report, asset);
     json["shortest_site_distance_mm"] = report.shortest_site_distance_mm;
     json["relative_radius"] = report.relative_radius;
     json["weight_scale"] = report.weight_scale;
@@ -63,14 +73,17 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
 std::string report_summary(const BuildReport& report, const OpalAsset& asset) {
     std::string text = fmt::format(
         "grains   {} from {} sites ({} hidden), {:.2f} mm across on average, largest {:.1f} % of the sites\n", asset.num_grains(),
-        asset.sites.size(), report.hidden_sites, mean_grain_diameter_mm(asset), 100.0 * report.largest_grain_fraction);
+        asset.sites.size(), report.hidden_sites, mean_diameter_mm(report, asset), 100.0 * report.largest_grain_fraction);
     text +=
         fmt::format("bonds    {} of {} kept ({:.2f} neighbours per site)\n", report.kept_bonds, report.bonds, report.mean_degree);
-    text += fmt::format(
-        "voxels   {} of {:.4g} mm inside the shape ({:.0f} % of its box), in {} leaves and {} tiles\n", report.voxels,
-        asset.grain_id->voxelSize().x(),
-        100.0 * static_cast<double>(report.voxels) / static_cast<double>(std::max<std::uint64_t>(1, report.voxels_in_box)),
-        report.leaves, report.tiles);
+    if (asset.grain_id)
+        text += fmt::format(
+            "voxels   {} of {:.4g} mm inside the shape ({:.0f} % of its box), in {} leaves and {} tiles\n", report.voxels,
+            asset.grain_id->voxelSize().x(),
+            100.0 * static_cast<double>(report.voxels) / static_cast<double>(std::max<std::uint64_t>(1, report.voxels_in_box)),
+            report.leaves, report.tiles);
+    else
+        text += "voxels   none: sites alone\n";
     if (report.scene_needs) text += scene_needs_summary(*report.scene_needs);
     text += fmt::format("time     {}, at most {:.0f} MB of memory\n", format_duration(report.total_seconds()),
                         static_cast<double>(peak_memory_bytes()) / 1.0e6);

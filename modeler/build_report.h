@@ -50,7 +50,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
 /// A few lines for a person.
 std::string report_summary(const BuildReport& report, const OpalAsset& asset);
 
-/// Diameter of a ball of the mean volume of a grain, in mm; 0 for an opal without grains.
+/// Diameter of a ball of the mean volume of a grain, in mm; 0 for an opal without grains or without voxels.
 double mean_grain_diameter_mm(const OpalAsset& asset);
 
 }  // namespace opal

@@ -31,6 +31,7 @@ struct BuildArguments {
     std::string scene_file;
     double accepted_error_pixels = 1.0;
     int threads = 0;
+    bool for_blender = false;
 };
 
 struct FileArguments {
@@ -68,12 +69,14 @@ int run_build(const BuildArguments& arguments) {
     std::optional<SceneFit> scene_fit;
     if (!arguments.scene_file.empty())
         scene_fit = SceneFit{read_scene(arguments.scene_file, {}), output, arguments.accepted_error_pixels};
-    BuiltOpal built = build_opal(read_recipe(arguments.recipe_file, arguments.overrides), say, scene_fit);
+    Recipe recipe = read_recipe(arguments.recipe_file, arguments.overrides);
+    recipe.output.for_blender = recipe.output.for_blender || arguments.for_blender;
+    BuiltOpal built = build_opal(recipe, say, scene_fit);
 
     throw_if_interrupted();
     say("write");
     const Stopwatch watch;
-    write_opal_asset(built.asset, output);
+    write_opal_asset(built.asset, output, {recipe.output.grids, recipe.output.for_blender});
     built.report.stages.push_back({"write", watch.seconds()});
     if (!arguments.report_file.empty()) write_report(arguments.report_file, report_to_json(built.report, built.asset));
     fmt::print("{}file     {}, {:.2f} MB\n", report_summary(built.report, built.asset), output.string(),
@@ -142,6 +145,8 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
     build->add_option("--threads", arguments.threads, "threads to use (default: all); the result is the same for any number")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
+    build->add_flag("--for-blender", arguments.for_blender,
+                    "add grain_id_float and orientation_rgb, twins of what Blender cannot show (the key output.for_blender)");
     build->add_option("--report", arguments.report_file, "write times, counts, versions and the resolved recipe as JSON")
         ->type_name("FILE.json");
     finish_command(*build);
