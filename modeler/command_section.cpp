@@ -23,8 +23,10 @@ const std::vector<std::string> axis_names = {"x", "y", "z"};
 
 int choice(const char* flag, const std::string& name, const std::vector<std::string>& names) {
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-        throw InputError(fmt::format("{} {}: not known{} (allowed: {})", flag, name, did_you_mean(name, names), join(names)));
+    if (found == names.end()) {
+        const std::string suggestion = name.size() > 1 ? did_you_mean(name, names) : "";
+        throw InputError(fmt::format("{} {}: not known{} (allowed: {})", flag, name, suggestion, join(names)));
+    }
     return static_cast<int>(found - names.begin());
 }
 

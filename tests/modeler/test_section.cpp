@@ -76,8 +76,14 @@ TEST(SectionRaster, ShowsTheGrainOfEveryPointInEveryDirection) {
                 for (int column = 0; column < raster.width; ++column) {
                     const openvdb::Vec3d p = frame.point_mm((column + 0.5) / 2.0, (row + 0.5) / 2.0);
                     double depth_mm = 1.0;  // into the box
-                    for (int c = 0; c < 3; ++c) depth_mm = std::min({depth_mm, p[c] - box_low_mm[c], box_high_mm[c] - p[c]});
-                    if (std::abs(depth_mm) < 0.01) continue;  // the level set's corners
+                    int faces_within_a_voxel = 0;
+                    for (int c = 0; c < 3; ++c) {
+                        const double face_mm = std::min(p[c] - box_low_mm[c], box_high_mm[c] - p[c]);
+                        depth_mm = std::min(depth_mm, face_mm);
+                        if (std::abs(face_mm) < voxel_mm) ++faces_within_a_voxel;
+                    }
+                    // Interpolated distances to one face are exact; they round the edges where two meet in a voxel.
+                    if (std::abs(depth_mm) < 0.01 || faces_within_a_voxel > 1) continue;
                     const std::int32_t expected = depth_mm > 0.0 ? octant(p) : 0;
                     ASSERT_EQ(raster.label[raster.index(column, row)], expected)
                         << "axis " << axis << " at " << p.x() << " " << p.y() << " " << p.z();
@@ -133,9 +139,11 @@ TEST(SectionRaster, FieldsAreInterpolatedLinearly) {
     const SectionFrame frame = centered_frame(asset, 2, 1.3, 0.1, 48, 30);
     const SectionRaster raster = sample_section(asset, frame, SectionColor::sigma_s_mie, 1);
     for (int row = 0; row < frame.height; ++row)
-        for (int column = 0; column < frame.width; ++column)
-            if (raster.label[raster.index(column, row)] != 0)
-                ASSERT_NEAR(raster.value[raster.index(column, row)], field(frame.point_mm(column + 0.5, row + 0.5)), 1e-5);
+        for (int column = 0; column < frame.width; ++column) {
+            if (raster.label[raster.index(column, row)] == 0) continue;
+            const openvdb::Vec3d p = frame.point_mm(column + 0.5, row + 0.5);
+            ASSERT_NEAR(raster.value[raster.index(column, row)], field(p), 1e-5);
+        }
 }
 
 TEST(SectionPicture, SameInputSamePixelsOnAnyThreads) {
