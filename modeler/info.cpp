@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "formats/text.h"
 #include "formats/units.h"
 #include "modeler/build_report.h"
 
@@ -30,6 +32,20 @@ nlohmann::json describe_constants(const OpalConstants& constants) {
             {"mie_asymmetry", constants.mie_asymmetry}};
 }
 
+std::vector<std::string> grids_in(const OpalAsset& asset) {
+    const std::pair<const char*, bool> grids[] = {{grid_names::grain_id, asset.grain_id != nullptr},
+                                                  {grid_names::shape, asset.shape != nullptr},
+                                                  {grid_names::weight, asset.weight != nullptr},
+                                                  {grid_names::sigma_a_scale, asset.sigma_a_scale != nullptr},
+                                                  {grid_names::sigma_s_rayleigh, asset.sigma_s_rayleigh_400nm != nullptr},
+                                                  {grid_names::sigma_s_mie, asset.sigma_s_mie != nullptr},
+                                                  {grid_names::sites, !asset.sites.empty()}};
+    std::vector<std::string> names;
+    for (const auto& [name, there] : grids)
+        if (there) names.push_back(name);
+    return names;
+}
+
 }  // namespace
 
 nlohmann::json describe_opal(const OpalAsset& asset) {
@@ -42,6 +58,7 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
     return {{"size_mm", {size_mm.x(), size_mm.y(), size_mm.z()}},
             {"lowest_corner_mm", {low_mm.x(), low_mm.y(), low_mm.z()}},
             {"volume_mm3", static_cast<double>(active) * asset.grain_id->voxelSize().product()},
+            {"grids", grids_in(asset)},
             {"voxel_size_mm", voxel_mm.x()},
             {"voxels", active},
             {"leaves", asset.grain_id->tree().leafCount()},
@@ -61,6 +78,13 @@ std::string opal_info_text(const nlohmann::json& d) {
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
     std::string text = fmt::format("size        {:.4g} x {:.4g} x {:.4g} mm, {:.4g} mm^3\n", number(d["size_mm"][0]),
                                    number(d["size_mm"][1]), number(d["size_mm"][2]), number(d["volume_mm3"]));
+    text += "extent     ";
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low_mm = number(d["lowest_corner_mm"][axis]);
+        text += fmt::format(" {} {:.4g} to {:.4g}{}", "xyz"[axis], low_mm, low_mm + number(d["size_mm"][axis]),
+                            axis < 2 ? "," : " mm\n");
+    }
+    text += fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
     text += fmt::format("voxels      {} of {:.4g} mm, in {} leaves\n", d["voxels"].get<std::uint64_t>(),
                         number(d["voxel_size_mm"]), d["leaves"].get<std::uint64_t>());
     text += fmt::format("grains      {}, {:.3g} mm across on average\n", d["grains"].get<std::uint64_t>(),
@@ -68,7 +92,7 @@ std::string opal_info_text(const nlohmann::json& d) {
     text += fmt::format("sites       {} ({} hidden)\n", d["sites"].get<std::uint64_t>(), d["hidden_sites"].get<std::uint64_t>());
     text += fmt::format("spheres     {:.4g} nm across, index {:.5g} in {:.5g}: effective index {:.5g}\n",
                         number(c["sphere_diameter_nm"]), number(c["n_sphere"]), number(c["n_medium"]), number(c["n_eff"]));
-    text += fmt::format("color       {:.1f} nm from (111) planes at normal incidence; coherence length {:.4g} um\n",
+    text += fmt::format("color       up to {:.1f} nm, from light straight onto (111) planes; coherence length {:.4g} um\n",
                         number(c["wavelength_111_normal_nm"]), number(c["coherence_length_um"]));
     text += fmt::format(
         "body        absorber {}, {:.4g} /mm at 550 nm; scattering {:.4g} /mm (Rayleigh, 400 nm) and {:.4g} /mm (Mie)\n",

@@ -10,6 +10,7 @@ lies on a boundary and is drawn dark, and the outermost layer, where ids fade to
 """
 
 import argparse
+import itertools
 import math
 import os
 import sys
@@ -167,19 +168,24 @@ def import_opal(path, color_by="grain", cut_axis=None):
     return opal, low, high
 
 
-def light_and_camera(low, high, cut_axis):
-    """A sun and a camera that looks at the cut, or at the front, from above."""
-    center, size = 0.5 * (low + high), max(high - low)
+def light_and_camera(low, high, cut_axis, width, height):
+    """A sun and a camera that looks at the cut, or at the front, from above, with what is drawn filling the picture."""
     scene = bpy.context.scene
-    view = Vector(((-1.0, -0.3, 0.6), (-0.15, -1.0, 1.0), (-0.1, -0.7, 1.0), (-0.15, -1.0, 1.0))[3 if cut_axis is None else cut_axis])
-    view.normalize()
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
+    drawn_low, drawn_high = low.copy(), high.copy()
+    if cut_axis is not None:
+        (drawn_high if cut_axis == 2 else drawn_low)[cut_axis] = 0.5 * (low[cut_axis] + high[cut_axis])
+    center, margin = 0.5 * (drawn_low + drawn_high), 0.55 * (drawn_high - drawn_low)
+    corners = [center[axis] + margin[axis] * sign[axis]
+               for sign in itertools.product((-1.0, 1.0), repeat=3) for axis in range(3)]
+    view = Vector(((-1.0, -0.3, 0.8), (-0.15, -1.0, 1.0), (-0.1, -0.7, 1.0), (-0.15, -1.0, 0.8))[3 if cut_axis is None else cut_axis])
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.data.lens = 90.0
-    camera.data.clip_end = 1000.0 * size
-    camera.location = center + 2.9 * size * view
-    camera.rotation_euler = (-view).to_track_quat("-Z", "Y").to_euler()
+    camera.data.clip_end = 1000.0 * max(high - low)
+    camera.rotation_euler = view.to_track_quat("Z", "Y").to_euler()
     scene.collection.objects.link(camera)
     scene.camera = camera
+    camera.location, _ = camera.camera_fit_coords(bpy.context.evaluated_depsgraph_get(), corners)
 
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
     sun.data.energy = 14.0
@@ -191,7 +197,7 @@ def light_and_camera(low, high, cut_axis):
     scene.world.cycles_visibility.scatter = False  # seen by the camera alone: light from all around would take many samples
 
 
-def render(path, width, height, samples):
+def render(path, samples):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
@@ -201,7 +207,6 @@ def render(path, width, height, samples):
     scene.cycles.volume_step_rate = 1.5
     scene.cycles.seed = 1
     scene.view_settings.view_transform = "Standard"
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
     scene.render.image_settings.file_format = "PNG"
     scene.render.image_settings.color_mode = "RGB"
     scene.render.filepath = os.path.abspath(path)
@@ -249,8 +254,8 @@ def main(arguments):
         bpy.data.objects.remove(old)
     cut_axis = {"x": 0, "y": 1, "z": 2}.get(options.cut)
     _, low, high = import_opal(options.opal, options.color, cut_axis)
-    light_and_camera(low, high, cut_axis)
-    render(options.picture, options.size[0], options.size[1], options.samples)
+    light_and_camera(low, high, cut_axis, options.size[0], options.size[1])
+    render(options.picture, options.samples)
 
 
 if __name__ == "__main__":

@@ -52,10 +52,11 @@ def take_picture(name, center, axis, width, height, pixel_mm):
     camera.rotation_euler = (0.0, 0.0, 0.0) if axis == 2 else (1.5707963267948966, 0.0, 0.0)
     scene.collection.objects.link(camera)
     scene.camera = camera
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
     scene.world = bpy.data.worlds.new("dark")
     scene.world.color = (0.0, 0.0, 0.0)
     path = os.path.join(folder, name)
-    import_opal.render(path, width, height, 1)
+    import_opal.render(path, 1)
     return load_pixels(path)
 
 
