@@ -18,6 +18,7 @@
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "modeler/build.h"
+#include "modeler/command_section.h"
 #include "modeler/info.h"
 
 namespace opal {
@@ -46,10 +47,11 @@ Examples:
   opal-model build recipe.toml -o opal.vdb
   opal-model build recipe.toml -o opal.vdb --set grains.num_sites=2000 --set shape.size_mm=[14.0,10.0,5.0] --report report.json
   opal-model build recipe.toml -o opal.vdb --for scene.toml
+  opal-model section opal.vdb --axis x -o section.png
   opal-model info opal.vdb
   opal-model check opal.vdb)";
 
-const std::vector<std::string> command_names = {"build", "info", "check"};
+const std::vector<std::string> command_names = {"build", "info", "check", "section"};
 
 void say(const std::string& message) {
     fmt::print(stderr, "opal-model: {}\n", message);
@@ -167,9 +169,11 @@ int run_opal_model(int argc, char** argv) {
     finish_command(app);
     BuildArguments build;
     FileArguments info, check;
+    SectionArguments section;
     add_build(app, build);
     add_file_command(app, "info", "Say what an opal .vdb holds (sizes in mm)", info, true);
     add_file_command(app, "check", "Check an opal .vdb against the schema; exit code 2 where it is unusable", check, false);
+    finish_command(*add_section(app, section));
     require_known_command(argc, argv);
     try {
         app.parse(argc, argv);
@@ -180,6 +184,7 @@ int run_opal_model(int argc, char** argv) {
     }
     if (app.got_subcommand("build")) return run_build(build);
     if (app.got_subcommand("info")) return run_info(info);
+    if (app.got_subcommand("section")) return run_section(section);
     return run_check(check);
 }
 

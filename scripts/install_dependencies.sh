@@ -9,6 +9,7 @@ packages="
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev
   libopenimageio-dev libopenexr-dev libtbb-dev libembree-dev libassimp-dev
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgtest-dev
+  fonts-dejavu-core
 "
 
 missing=""
