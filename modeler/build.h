@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
-#include <string>
-
 #include "formats/opal_asset.h"
 #include "formats/recipe.h"
 #include "modeler/build_report.h"
@@ -14,9 +11,6 @@ struct BuiltOpal {
     OpalAsset asset;
     BuildReport report;
 };
-
-/// Told the name of each stage as it begins, and warnings.
-using BuildListener = std::function<void(const std::string& message)>;
 
 /// The whole modeler, from recipe to asset: shape -> sites -> weights -> neighbour graph -> sintering -> level set -> labelling
 /// -> orientations -> constants. The same recipe gives the same asset, bit for bit, on any number of threads. Throws InputError

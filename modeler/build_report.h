@@ -2,14 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/opal_asset.h"
+#include "modeler/grain_statistics.h"
 
 namespace opal {
+
+/// Told the name of each stage as it begins, and warnings.
+using BuildListener = std::function<void(const std::string& message)>;
 
 struct StageTime {
     std::string stage;
@@ -35,6 +40,8 @@ struct BuildReport {
     std::uint64_t voxels = 0;  ///< inside the shape
     std::uint64_t leaves = 0;  ///< of grain_id
     std::uint64_t tiles = 0;   ///< active ones of grain_id
+
+    GrainStatistics grain_statistics;
 
     double total_seconds() const;
 };

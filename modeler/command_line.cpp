@@ -16,6 +16,7 @@
 #include "formats/report.h"
 #include "formats/text.h"
 #include "modeler/build.h"
+#include "modeler/command_percolation.h"
 #include "modeler/info.h"
 
 namespace opal {
@@ -41,9 +42,10 @@ Examples:
   opal-model build recipe.toml -o opal.vdb
   opal-model build recipe.toml -o opal.vdb --set grains.num_sites=2000 --set shape.size_mm=[14.0,10.0,5.0] --report report.json
   opal-model info opal.vdb
-  opal-model check opal.vdb)";
+  opal-model check opal.vdb
+  opal-model percolation recipe.toml -o percolation.csv --plot percolation.png)";
 
-const std::vector<std::string> command_names = {"build", "info", "check"};
+const std::vector<std::string> command_names = {"build", "info", "check", "percolation"};
 
 void say(const std::string& message) {
     fmt::print(stderr, "opal-model: {}\n", message);
@@ -147,6 +149,8 @@ int run_opal_model(int argc, char** argv) {
     add_build(app, build);
     add_file_command(app, "info", "Say what an opal .vdb holds (sizes in mm)", info, true);
     add_file_command(app, "check", "Check an opal .vdb against the schema; exit code 2 where it is unusable", check, false);
+    PercolationArguments percolation;
+    finish_command(*add_percolation(app, percolation));
     require_known_command(argc, argv);
     try {
         app.parse(argc, argv);
@@ -157,6 +161,7 @@ int run_opal_model(int argc, char** argv) {
     }
     if (app.got_subcommand("build")) return run_build(build);
     if (app.got_subcommand("info")) return run_info(info);
+    if (app.got_subcommand("percolation")) return run_percolation(percolation, say);
     return run_check(check);
 }
 
