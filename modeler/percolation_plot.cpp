@@ -71,7 +71,7 @@ class Canvas {
         pls_.join(p, 0.0, p, 1.02);
         pls_.lsty(1);
         pls_.schr(0.0, 0.8);
-        label(threshold_color, p + 0.012 * p_end_, 0.55, fmt::format("threshold {:.3g}", p));
+        label(threshold_color, p + 0.012 * p_end_, 0.96, fmt::format("threshold {:.3g}", p));
     }
 
     void legend() {
@@ -80,7 +80,6 @@ class Canvas {
         legend_line(largest_color, left, 0.53, "largest grain");
         if (!plot_.marked_p) return;
         pls_.col0(ink.index);
-        pls_.ssym(0.0, 1.0);
         const double x = left + 0.02 * p_end_, y = 0.46;
         symbol(x, y);
         label(ink, left + 0.055 * p_end_, y, fmt::format("this recipe, p = {:.3g}", *plot_.marked_p));
@@ -94,7 +93,7 @@ class Canvas {
         pls_.col0(color.index);
         symbol(at, y[n - 1] + t * (y[n] - y[n - 1]));
     }
-    void symbol(double x, double y) { pls_.string(1, &x, &y, "#(728)"); }
+    void symbol(double x, double y) { pls_.string(1, &x, &y, "#[0x25cf]"); }
     void label(const Color& color, double x, double y, const std::string& text) {
         pls_.col0(color.index);
         pls_.schr(0.0, 0.8);
