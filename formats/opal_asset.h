@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/bezier_patch.h"
+#include "formats/random.h"
 #include "formats/recipe.h"
 #include "formats/spectrum.h"
 
@@ -117,7 +118,11 @@ AssetCheck check_opal_asset(const std::filesystem::path& path);
 /// Makes OpenVDB's grid and attribute types known; called by every function here.
 void initialize_openvdb();
 
-/// A uniformly random rotation for (seed, grain): Shoemake 1992, "Uniform random rotations", Graphics Gems III.
+/// A uniformly random rotation, a pure function of (seed, stream, index): Shoemake 1992, "Uniform random rotations", Graphics
+/// Gems III.
+openvdb::math::Quat<float> uniform_rotation(std::uint64_t seed, RandomStream stream, std::uint64_t index);
+
+/// The uniformly random rotation of a grain; `foreign` files have draws of their own.
 openvdb::math::Quat<float> random_orientation(std::uint64_t seed, bool foreign, std::uint64_t grain);
 
 /// A repeatable display colour of a grain: hue by the golden angle, constant lightness.

@@ -181,6 +181,10 @@ GrainsRecipe read_grains(TomlSection section, int& resolution) {
     grains.boundary_noise = read_boundary_noise(section.section("boundary_noise"));
     grains.sintering = read_sintering(section.section("sintering"), grains);
     grains.orientation = read_orientation(section.section("orientation"));
+    if (grains.orientation.kind == OrientationKind::table && grains.sintering.preference == BondPreference::misorientation)
+        section.fail("orientation",
+                     "a table orients finished grains; preference = \"misorientation\" needs sites that have "
+                     "orientations before: kind \"uniform\" or \"fibre\"");
     section.finish();
     return grains;
 }

@@ -73,7 +73,7 @@ struct OrientationRecipe {
     OrientationKind kind = OrientationKind::uniform;
     std::array<double, 3> axis = {0, 0, 1};     ///< fibre: direction in the opal
     std::array<double, 3> lattice = {1, 1, 1};  ///< fibre: lattice direction that lies along the axis
-    double spread_deg = 10.0;                   ///< fibre: standard deviation of the tilt away from it
+    double spread_deg = 10.0;                   ///< fibre: angular standard deviation of the tilt away from it
     std::filesystem::path file;                 ///< table: .csv with grain,x,y,z,w
 };
 

@@ -6,18 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/command.h"
 #include "formats/error.h"
 #include "formats/field_summary.h"
 #include "formats/report.h"
 #include "modeler/base_color_fields.h"
+#include "modeler/grain_growth.h"
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
-#include "modeler/neighbour_graph.h"
 #include "modeler/shape.h"
-#include "modeler/sintering.h"
-#include "modeler/sites.h"
-#include "modeler/weights.h"
+#include "modeler/site_network.h"
+#include "modeler/stage_runner.h"
 
 namespace opal {
 namespace {
@@ -30,31 +28,6 @@ constexpr double min_voxel_size_mm = 1.5e-5;
 /// A grain with more than this part of the sites deserves a warning, in an opal of more than so many sites.
 constexpr double large_grain_fraction = 0.2;
 constexpr std::size_t few_sites = 50;
-
-/// Runs stages, timing and announcing them.
-class StageRunner {
-  public:
-    StageRunner(BuildReport& report, const BuildListener& listener) : report_(report), listener_(listener) {}
-
-    template <typename Work>
-    auto run(const std::string& stage, const Work& work) {
-        throw_if_interrupted();
-        listener_(stage);
-        const Stopwatch watch;
-        auto result = work();
-        report_.stages.push_back({stage, watch.seconds()});
-        return result;
-    }
-
-    void warn(const std::string& warning) {
-        report_.warnings.push_back(warning);
-        listener_("warning: " + warning);
-    }
-
-  private:
-    BuildReport& report_;
-    const BuildListener& listener_;
-};
 
 double resolve_voxel_size_mm(const Recipe& recipe, const openvdb::BBoxd& bounds_mm) {
     const openvdb::Vec3d extents_mm = bounds_mm.extents();
@@ -80,6 +53,8 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.n_sphere = recipe.crystal.n_sphere;
     constants.n_medium = recipe.crystal.n_medium;
     constants.coherence_length_um = recipe.crystal.coherence_length_um;
+    constants.stacking_fault_probability = recipe.crystal.stacking_fault_probability;
+    constants.mosaic_spread_deg = recipe.crystal.mosaic_spread_deg;
     constants.absorber = recipe.base_color.absorber;
     constants.sigma_a_per_mm = absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm);
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
@@ -96,34 +71,16 @@ void describe_sites(const SiteSet& sites, BuildReport& report) {
     report.relative_radius = sites.relative_radius;
 }
 
-/// Gives the sites their weights, and the asset the field behind them where the recipe asks for it.
-void weigh(const Recipe& recipe, const SiteSet& sites, const Shape& shape, StageRunner& stages, BuildReport& report,
-           OpalAsset& asset) {
-    const GrainsRecipe& grains = recipe.grains;
-    WeighedSites weighed = stages.run("weights", [&] { return weigh_sites(sites, grains, shape); });
-    asset.sites = std::move(weighed.sites);
-    report.weight_scale = weighed.weight_scale;
-    if (weighed.weight_scale < 1.0)
-        stages.warn(
-            fmt::format("weights were multiplied by {:.4g}, so that neighbouring sites differ by less than their shortest "
-                        "distance (grains.limit_weights)",
-                        weighed.weight_scale));
-    if (recipe.output.has(OutputGrid::weight))
-        asset.weight = stages.run("weight_grid", [&] { return make_weight_grid(sites, grains, shape, weighed.weight_scale); });
-}
-
-void describe_sintering(const NeighbourGraph& graph, const std::vector<char>& hidden, const Sintering& sintering,
-                        StageRunner& stages, BuildReport& report) {
-    const auto visible = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), char(0)));
-    report.hidden_sites = hidden.size() - visible;
-    report.bonds = graph.size();
+void describe_sintering(const SiteNetwork& network, const Sintering& sintering, StageRunner& stages, BuildReport& report) {
+    report.hidden_sites = network.hidden.size() - network.num_visible();
+    report.bonds = network.graph.size();
     report.kept_bonds = sintering.num_kept_bonds;
-    report.mean_degree = 2.0 * static_cast<double>(graph.size()) / static_cast<double>(visible);
+    report.mean_degree = network.mean_degree();
     report.bond_probability = sintering.probability;
     report.largest_grain_fraction = sintering.largest_grain_fraction;
     report.percolation_threshold = sintering.threshold;
-    if (hidden.size() > few_sites && sintering.largest_grain_fraction > large_grain_fraction)
-        stages.warn(fmt::format("one grain holds {:.0f} % of the opal's sites (p {:.3g}; this graph percolates near p = {:.3g})",
+    if (network.sites.size() > few_sites && sintering.largest_grain_fraction > large_grain_fraction)
+        stages.warn(fmt::format("one grain holds {:.0f} % of the opal's sites (p {:.3g}, threshold about {:.2g})",
                                 100.0 * sintering.largest_grain_fraction, sintering.probability,
                                 sintering.threshold.value_or(1.0)));
 }
@@ -180,21 +137,14 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     asset.recipe_toml = recipe_to_toml(recipe);
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
-    const SiteSet sites = stages.run(
-        "sites", [&] { return sample_sites(*shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
-    describe_sites(sites, report);
-    weigh(recipe, sites, *shape, stages, report, asset);
-    const std::vector<char> hidden =
-        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, sites.spacing_mm(), asset.tessellation); });
-
-    const NeighbourGraph graph = stages.run("neighbour_graph", [&] {
-        return recipe.grains.sintering.graph == SinteringGraph::delaunay
-                   ? delaunay_graph(asset.sites, hidden)
-                   : apollonius_graph(asset.sites, hidden, *shape, sites.spacing_mm());
-    });
-    const Sintering sintering =
-        stages.run("sintering", [&] { return sinter(graph, hidden, recipe.grains.sintering, recipe.grains.seed); });
-    describe_sintering(graph, hidden, sintering, stages, report);
+    SiteNetwork network = make_site_network(recipe, *shape, stages);
+    describe_sites(network.site_set, report);
+    const GrainGrowth growth = grow_grains(recipe, network, stages);
+    const Sintering& sintering = growth.sintering;
+    describe_sintering(network, sintering, stages, report);
+    report.weight_scale = network.weight_scale;
+    asset.sites = std::move(network.sites);
+    asset.weight = network.weight_grid;
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
     asset.bezier_patches = shape->bezier_patches();
@@ -218,12 +168,8 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
             });
     }
 
-    asset.grain_orientations = stages.run("orientations", [&] {
-        std::vector<openvdb::math::Quat<float>> orientations;
-        for (std::int32_t grain = 1; grain <= sintering.num_grains; ++grain)
-            orientations.push_back(random_orientation(recipe.grains.seed, false, static_cast<std::uint64_t>(grain)));
-        return orientations;
-    });
+    asset.grain_orientations = growth.grain_orientations;
+    report.grain_statistics = stages.run("grain_statistics", [&] { return grain_statistics(asset, network.graph); });
     return built;
 }
 

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
-#include <string>
 
 #include "formats/opal_asset.h"
 #include "formats/recipe.h"
@@ -17,9 +15,6 @@ struct BuiltOpal {
     OpalAsset asset;
     BuildReport report;
 };
-
-/// Told the name of each stage as it begins, and warnings.
-using BuildListener = std::function<void(const std::string& message)>;
 
 /// For which picture an opal is modelled, where it is modelled for one.
 struct SceneFit {

@@ -12,6 +12,24 @@
 
 namespace opal {
 
+namespace {
+
+std::string describe_distributions(const GrainStatistics& statistics) {
+    std::string text;
+    if (statistics.has_volumes)
+        text += fmt::format("sizes    {:.3g} to {:.3g} mm across, half of the grains below {:.3g} mm{}\n",
+                            statistics.diameter_mm.min, statistics.diameter_mm.max, statistics.diameter_mm.median,
+                            statistics.grains_without_voxels == 0
+                                ? std::string()
+                                : fmt::format("; {} grains have no voxel", statistics.grains_without_voxels));
+    if (statistics.neighbouring_grains > 0)
+        text += fmt::format("lattices {:.1f} degrees apart on average between {} pairs of neighbours (random: 40.7)\n",
+                            statistics.misorientation_deg.mean, statistics.neighbouring_grains);
+    return text;
+}
+
+}  // namespace
+
 double BuildReport::total_seconds() const {
     double sum = 0.0;
     for (const StageTime& time : stages) sum += time.seconds;
@@ -63,6 +81,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
     json["percolation_threshold"] =
         report.percolation_threshold ? nlohmann::json(*report.percolation_threshold) : nlohmann::json();
     if (report.scene_needs) json["for_scene"] = scene_needs_to_json(*report.scene_needs);
+    json["grain_statistics"] = grain_statistics_to_json(report.grain_statistics);
     json["warnings"] = report.warnings;
     json["versions"] = version_report();
     json["seed"] = asset.seed;
@@ -74,6 +93,7 @@ std::string report_summary(const BuildReport& report, const OpalAsset& asset) {
     std::string text = fmt::format(
         "grains   {} from {} sites ({} hidden), {:.2f} mm across on average, largest {:.1f} % of the sites\n", asset.num_grains(),
         asset.sites.size(), report.hidden_sites, mean_diameter_mm(report, asset), 100.0 * report.largest_grain_fraction);
+    text += describe_distributions(report.grain_statistics);
     text +=
         fmt::format("bonds    {} of {} kept ({:.2f} neighbours per site)\n", report.kept_bonds, report.bonds, report.mean_degree);
     if (asset.grain_id)

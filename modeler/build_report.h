@@ -2,15 +2,20 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/opal_asset.h"
+#include "modeler/grain_statistics.h"
 #include "modeler/scene_needs.h"
 
 namespace opal {
+
+/// Told the name of each stage as it begins, and warnings.
+using BuildListener = std::function<void(const std::string& message)>;
 
 struct StageTime {
     std::string stage;
@@ -40,6 +45,8 @@ struct BuildReport {
     std::uint64_t tiles = 0;          ///< active ones of grain_id
 
     std::optional<SceneNeeds> scene_needs;  ///< where the opal was modelled for a scene
+
+    GrainStatistics grain_statistics;
 
     double total_seconds() const;
 };

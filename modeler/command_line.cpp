@@ -18,6 +18,7 @@
 #include "formats/scene.h"
 #include "formats/text.h"
 #include "modeler/build.h"
+#include "modeler/command_percolation.h"
 #include "modeler/command_section.h"
 #include "modeler/info.h"
 
@@ -49,9 +50,10 @@ Examples:
   opal-model build recipe.toml -o opal.vdb --for scene.toml
   opal-model section opal.vdb --axis x -o section.png
   opal-model info opal.vdb
-  opal-model check opal.vdb)";
+  opal-model check opal.vdb
+  opal-model percolation recipe.toml -o percolation.csv --plot percolation.png)";
 
-const std::vector<std::string> command_names = {"build", "info", "check", "section"};
+const std::vector<std::string> command_names = {"build", "info", "check", "section", "percolation"};
 
 void say(const std::string& message) {
     fmt::print(stderr, "opal-model: {}\n", message);
@@ -174,6 +176,8 @@ int run_opal_model(int argc, char** argv) {
     add_file_command(app, "info", "Say what an opal .vdb holds (sizes in mm)", info, true);
     add_file_command(app, "check", "Check an opal .vdb against the schema; exit code 2 where it is unusable", check, false);
     finish_command(*add_section(app, section));
+    PercolationArguments percolation;
+    finish_command(*add_percolation(app, percolation));
     require_known_command(argc, argv);
     try {
         app.parse(argc, argv);
@@ -185,6 +189,7 @@ int run_opal_model(int argc, char** argv) {
     if (app.got_subcommand("build")) return run_build(build);
     if (app.got_subcommand("info")) return run_info(info);
     if (app.got_subcommand("section")) return run_section(section);
+    if (app.got_subcommand("percolation")) return run_percolation(percolation, say);
     return run_check(check);
 }
 

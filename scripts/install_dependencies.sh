@@ -8,6 +8,7 @@ packages="
   libopenvdb-dev libnanovdb-dev libopenvdb-tools libboost-iostreams-dev libblosc-dev
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev
   libopenimageio-dev libopenexr-dev libtbb-dev libembree-dev libassimp-dev
+  libplplot-dev plplot-driver-cairo
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgtest-dev
   fonts-dejavu-core
 "
