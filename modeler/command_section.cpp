@@ -19,6 +19,8 @@ namespace opal {
 namespace {
 
 constexpr int single_size_px = 800, sheet_size_px = 400;
+/// Of a sheet's sections together: about 3 GB while it is drawn.
+constexpr double max_pixels = 0x1p25;
 const std::vector<std::string> axis_names = {"x", "y", "z"};
 
 int choice(const char* flag, const std::string& name, const std::vector<std::string>& names) {
@@ -45,8 +47,12 @@ SectionRequest request_of(const SectionArguments& arguments) {
         if (!request.at_mm || end != arguments.at_mm.size() || !std::isfinite(*request.at_mm))
             throw InputError(fmt::format("--at {}: expected a number, in mm", arguments.at_mm));
     }
-    const bool single = arguments.files.size() == 1 && arguments.slices == 1;
-    request.size_px = arguments.size_px > 0 ? arguments.size_px : single ? single_size_px : sheet_size_px;
+    const std::size_t sections = arguments.files.size() * static_cast<std::size_t>(arguments.slices);
+    request.size_px = arguments.size_px > 0 ? arguments.size_px : sections == 1 ? single_size_px : sheet_size_px;
+    const double pixels = static_cast<double>(sections) * request.size_px * request.size_px;
+    if (pixels > max_pixels)
+        throw InputError(fmt::format("--size {}: {} sections of that size are too large for one picture; allowed: up to {:.0f}",
+                                     request.size_px, sections, std::sqrt(max_pixels / static_cast<double>(sections))));
     return request;
 }
 

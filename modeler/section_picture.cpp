@@ -204,10 +204,8 @@ void write_captions(PicturePage& page, const Layout& layout, const std::vector<S
     for (std::size_t n = 0; n < sections.size(); ++n) {
         const Section& section = sections[n];
         const PageRectangle place = layout.place(n, section.frame);
-        // Rounded to a thousandth of a pixel's worth of digits: 2.25, not 2.2500000001.
-        std::string caption =
-            fmt::format("{} = {:.4g} mm", axis_names[request.axis],
-                        std::abs(section.frame.at_mm) < 1.0e-3 * section.frame.pixel_mm ? 0.0 : section.frame.at_mm);
+        const bool at_zero = std::abs(section.frame.at_mm) < 1.0e-3 * section.frame.pixel_mm;  // but for rounding
+        std::string caption = fmt::format("{} = {:.4g} mm", axis_names[request.axis], at_zero ? 0.0 : section.frame.at_mm);
         if (several_opals) caption = section.subject->title + ", " + caption;
         if (sections.size() == 1) caption = color_title(request, *section.subject->asset) + ", " + caption;
         page.text(place.x, place.y - layout.text_px, caption, layout.text_px, TextAlign::left);

@@ -178,11 +178,11 @@ def light_and_camera(low, high, cut_axis, width, height):
     center, margin = 0.5 * (drawn_low + drawn_high), 0.55 * (drawn_high - drawn_low)
     corners = [center[axis] + margin[axis] * sign[axis]
                for sign in itertools.product((-1.0, 1.0), repeat=3) for axis in range(3)]
-    view = Vector(((-1.0, -0.3, 0.8), (-0.15, -1.0, 1.0), (-0.1, -0.7, 1.0), (-0.15, -1.0, 0.8))[3 if cut_axis is None else cut_axis])
+    views = {0: (-1.0, -0.3, 0.8), 1: (-0.15, -1.0, 1.0), 2: (-0.1, -0.7, 1.0), None: (-0.15, -1.0, 0.8)}
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.data.lens = 90.0
     camera.data.clip_end = 1000.0 * max(high - low)
-    camera.rotation_euler = view.to_track_quat("Z", "Y").to_euler()
+    camera.rotation_euler = Vector(views[cut_axis]).to_track_quat("Z", "Y").to_euler()
     scene.collection.objects.link(camera)
     scene.camera = camera
     camera.location, _ = camera.camera_fit_coords(bpy.context.evaluated_depsgraph_get(), corners)
@@ -246,8 +246,9 @@ def main(arguments):
     parser.add_argument("opal", help="opal .vdb")
     parser.add_argument("picture", help="PNG to write")
     parser.add_argument("--color", choices=("grain", "orientation"), default="grain")
-    parser.add_argument("--cut", choices=("x", "y", "z", "none"), default="y", help="cut the opal open in the middle across an axis")
-    parser.add_argument("--samples", type=int, default=16)
+    parser.add_argument("--cut", choices=("x", "y", "z", "none"), default="y",
+                        help="cut the opal open in the middle across an axis (default y)")
+    parser.add_argument("--samples", type=int, default=16, help="per pixel (default 16)")
     parser.add_argument("--size", type=int, nargs=2, default=(720, 420), metavar=("WIDTH", "HEIGHT"))
     options = parser.parse_args(arguments)
     for old in list(bpy.data.objects):

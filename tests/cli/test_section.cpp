@@ -58,6 +58,7 @@ TEST_F(Section, WhatCannotBeShownIsNamed) {
     expect_failure(section("--color grian"), 2, "--color grian: not known; did you mean 'grain'? (allowed: grain, orientation");
     expect_failure(section("--color sigma_s_mie"), 2, "ball.vdb: no grid sigma_s_mie");
     expect_failure(section("--size 3"), 2, "--size");
+    expect_failure(section("--size 4096 --slices 8"), 2, "--size 4096: 8 sections of that size are too large");
     expect_failure(section("", "out.jpg"), 2, "the name must end in .png");
     expect_failure(section("", "nowhere/out.png"), 2, "nowhere");
     expect_failure(opal_model + " section " + at("missing.vdb") + " -o " + at("out.png"), 2, "missing.vdb: no such file");

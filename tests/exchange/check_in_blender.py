@@ -15,8 +15,7 @@ import import_opal  # noqa: E402
 
 VOXEL_MM = 0.1
 LOW, HIGH = Vector((-3.0, -2.0, 0.0)), Vector((3.0, 2.0, 2.0))
-# Of the middle of a silhouette: one sample per pixel is drawn at random within it, 200 rows average that away.
-PIXEL_MM, CENTROID_TOLERANCE_MM = 0.025, 0.005
+PIXEL_MM = 0.025
 
 
 def require(truth, message):
@@ -80,7 +79,6 @@ def silhouette_middle(pixels):
     rows = [sum(pixel[1] for pixel in row) for row in pixels]
 
     def extent(sums):
-        # Half of the brightest line is the edge; between two lines it is found by interpolation.
         half, n = 0.5 * max(sums), len(sums)
         first = next(i for i in range(n) if sums[i] >= half)
         last = next(i for i in reversed(range(n)) if sums[i] >= half)
@@ -145,7 +143,6 @@ opal_material = opal.data.materials[0]
 opal.data.materials[0] = silhouette_shader()
 center = 0.5 * (LOW + HIGH)
 for axis, up in ((2, 1), (1, 2)):
-    # Twice as many pixels as the box needs upwards, so that its edge is free.
     pixels = take_picture("silhouette%d.png" % axis, center, axis, 280, 200, PIXEL_MM)
     x, y, width, height = silhouette_middle(pixels)
     print("silhouette along %s: middle %.4f, %.4f mm, extent %.3f x %.3f mm" %
@@ -165,7 +162,8 @@ for grain_grid in [name for name in import_opal.GRAIN_GRIDS if name in grids]:
     theirs = take_picture(grain_grid + ".png", center, 2, width, height, 6.0 * 1.06 / width)
     fraction, compared = matching_fraction(ours, theirs)
     mirrored, _ = matching_fraction(ours, [list(reversed(row)) for row in theirs])
-    print("%s: %.2f %% of %d pixels as in the section; mirrored %.2f %%" % (grain_grid, 100.0 * fraction, compared, 100.0 * mirrored))
+    print("%s: %.2f %% of %d pixels as in the section; mirrored %.2f %%" %
+          (grain_grid, 100.0 * fraction, compared, 100.0 * mirrored))
     require(compared > 2000 and fraction > 0.99, "%s: the grains lie where opal-model's section has them" % grain_grid)
     require(mirrored < 0.5, "%s: a mirrored picture would be noticed" % grain_grid)
 print("all checks passed")
