@@ -138,6 +138,7 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
     SiteNetwork network = make_site_network(recipe, *shape, stages);
+    for (const std::string& warning : network.site_set.warnings) stages.warn(warning);
     describe_sites(network.site_set, report);
     const GrainGrowth growth = grow_grains(recipe, network, stages);
     const Sintering& sintering = growth.sintering;

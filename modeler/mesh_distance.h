@@ -16,8 +16,10 @@ class MeshDistance {
     MeshDistance& operator=(const MeshDistance&) = delete;
 
     double signed_distance_mm(const openvdb::Vec3d& point_mm) const;
-    /// The distance without its sign, which costs less.
-    double distance_mm(const openvdb::Vec3d& point_mm) const;
+    /// The place on the mesh that is nearest to the point.
+    openvdb::Vec3d nearest_point_mm(const openvdb::Vec3d& point_mm) const;
+    /// The same, sooner found from a place on the mesh that is known to be near.
+    openvdb::Vec3d nearest_point_mm(const openvdb::Vec3d& point_mm, const openvdb::Vec3d& on_surface_mm) const;
     bool contains(const openvdb::Vec3d& point_mm) const;
 
   private:

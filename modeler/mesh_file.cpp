@@ -47,22 +47,39 @@ void append(const aiMesh& part, double mm_per_unit, const std::filesystem::path&
     }
 }
 
-}  // namespace
-
-TriangleMesh read_mesh_file(const std::filesystem::path& file, double mm_per_unit) {
+const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
     require_readable(file);
-    Assimp::Importer importer;
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* const scene =
-        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
+    const aiScene* const scene = importer.ReadFile(file.string(), steps);
     if (scene == nullptr) {
         const std::string reason = importer.GetErrorString();
         throw InputError(fmt::format("mesh {}: cannot be read: {}", file.string(), reason.empty() ? "unknown content" : reason));
     }
+    return *scene;
+}
+
+}  // namespace
+
+TriangleMesh read_mesh_file(const std::filesystem::path& file, double mm_per_unit) {
+    Assimp::Importer importer;
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene& scene =
+        read_scene(importer, file, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
     TriangleMesh mesh;
-    for (unsigned n = 0; n < scene->mNumMeshes; ++n) append(*scene->mMeshes[n], mm_per_unit, file, mesh);
+    for (unsigned n = 0; n < scene.mNumMeshes; ++n) append(*scene.mMeshes[n], mm_per_unit, file, mesh);
     if (mesh.triangles.empty()) throw InputError(fmt::format("mesh {}: holds no triangles", file.string()));
     return mesh;
+}
+
+std::vector<openvdb::Vec3d> read_mesh_vertices(const std::filesystem::path& file) {
+    Assimp::Importer importer;
+    const aiScene& scene = read_scene(importer, file, 0);
+    std::vector<openvdb::Vec3d> vertices;
+    for (unsigned n = 0; n < scene.mNumMeshes; ++n)
+        for (unsigned k = 0; k < scene.mMeshes[n]->mNumVertices; ++k) {
+            const aiVector3D& v = scene.mMeshes[n]->mVertices[k];
+            vertices.emplace_back(v.x, v.y, v.z);
+        }
+    return vertices;
 }
 
 }  // namespace opal

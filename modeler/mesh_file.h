@@ -12,4 +12,8 @@ namespace opal {
 /// coordinates.
 TriangleMesh read_mesh_file(const std::filesystem::path& file, double mm_per_unit);
 
+/// The points of such a file, those that no triangle uses too, in the file's units. Throws InputError for missing and
+/// foreign files.
+std::vector<openvdb::Vec3d> read_mesh_vertices(const std::filesystem::path& file);
+
 }  // namespace opal

@@ -7,6 +7,7 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "formats/command.h"
 #include "modeler/level_set.h"
@@ -60,9 +61,13 @@ class MeshShape final : public Shape {
         openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
         leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
             if (interrupt_requested()) return;
+            std::optional<openvdb::Vec3d> nearest_mm;
             for (auto value = leaf.beginValueOn(); value; ++value) {
                 const openvdb::Vec3d point_mm = value.getCoord().asVec3d() * voxel_size_mm;
-                const double distance_mm = distance_.distance_mm(point_mm);
+                // What is nearest to the voxel before is near to this one.
+                nearest_mm =
+                    nearest_mm ? distance_.nearest_point_mm(point_mm, *nearest_mm) : distance_.nearest_point_mm(point_mm);
+                const double distance_mm = (*nearest_mm - point_mm).length();
                 const bool inside = distance_mm < uncertain_sign * voxel_size_mm ? distance_.contains(point_mm) : *value < 0.0f;
                 const double stored_mm = std::min(distance_mm, band_mm);
                 value.setValue(static_cast<float>(inside ? -stored_mm : stored_mm));

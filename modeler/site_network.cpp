@@ -52,8 +52,7 @@ double SiteNetwork::mean_degree() const {
 
 SiteNetwork make_site_network(const Recipe& recipe, const Shape& shape, StageRunner& stages) {
     SiteNetwork network;
-    network.site_set = stages.run(
-        "sites", [&] { return sample_sites(shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
+    network.site_set = stages.run("sites", [&] { return sample_sites(shape, recipe.grains); });
     weigh(recipe, shape, network, stages);
     network.hidden = stages.run("hidden_sites", [&] {
         return find_hidden_sites(network.sites, network.site_set.spacing_mm(), recipe.grains.tessellation);

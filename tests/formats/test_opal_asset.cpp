@@ -9,6 +9,19 @@
 namespace opal {
 namespace {
 
+TEST_F(OpalAssetTest, BezierPatchesSurviveARoundTrip) {
+    OpalAsset asset = two_grain_ball();
+    BezierPatch patch{};
+    patch.part = 2;
+    patch.control_mm[3][1][0] = 1.0 / 3.0;
+    asset.bezier_patches = {patch};
+    write_opal_asset(asset, folder_ / "patches.vdb");
+    const OpalAsset back = read(folder_ / "patches.vdb");
+    ASSERT_EQ(back.bezier_patches.size(), 1u);
+    EXPECT_EQ(back.bezier_patches[0].part, 2);
+    EXPECT_EQ(back.bezier_patches[0].control_mm[3][1][0], 1.0 / 3.0);
+}
+
 TEST_F(OpalAssetTest, RoundTripKeepsEverything) {
     const OpalAsset asset = two_grain_ball();
     write_opal_asset(asset, folder_ / "a.vdb");

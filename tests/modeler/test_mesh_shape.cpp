@@ -169,11 +169,93 @@ TEST(MeshShape, OpenMeshIsRefusedNamingItsHoles) {
     EXPECT_NE(message.find("open.obj: is open, it must be closed: 4 border edges around 1 hole"), std::string::npos) << message;
 }
 
-TEST(MeshShape, SelfIntersectingMeshIsRefused) {
-    const std::string crossing = obj_cuboid({0, 0, 0}, {2, 2, 2}) + obj_cuboid({1, 1, 1}, {3, 3, 3}, 12, 8);
-    const auto file = write_test_file("crossing.obj", crossing);
-    const auto message = input_error_of([&] { make_mesh_shape(file, 1.0); });
-    EXPECT_NE(message.find("crossing.obj: intersects itself"), std::string::npos) << message;
+/// The triangles numbered in `flipped` turned around.
+std::string with_flipped_faces(const std::string& obj, const std::vector<int>& flipped) {
+    std::istringstream lines(obj);
+    std::ostringstream turned;
+    int face = 0;
+    for (std::string line; std::getline(lines, line);) {
+        int a, b, c;
+        if (std::sscanf(line.c_str(), "f %d %d %d", &a, &b, &c) == 3 &&
+            std::find(flipped.begin(), flipped.end(), face++) != flipped.end())
+            turned << "f " << c << ' ' << b << ' ' << a << '\n';
+        else
+            turned << line << '\n';
+    }
+    return turned.str();
+}
+
+TEST(MeshShape, SingleFlippedTrianglesAreTurned) {
+    const auto file = write_test_file("flipped.obj", with_flipped_faces(obj_cuboid(low, high), {0, 3, 7, 11}));
+    expect_cuboid(*make_mesh_shape(file, 1.0), low, high);
+}
+
+/// Inside of one cuboid (6 x 6 x 6, twelve triangles from 0) and another in it or beside it.
+std::unique_ptr<Shape> two_cuboids(const openvdb::Vec3d& from, const openvdb::Vec3d& to, const std::vector<int>& flipped) {
+    const std::string both = obj_cuboid({0, 0, 0}, {6, 6, 6}) + obj_cuboid(from, to, 12, 8);
+    return make_mesh_shape(write_test_file("two_cuboids.obj", with_flipped_faces(both, flipped)), 1.0);
+}
+
+const std::vector<int> second_part = {12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+
+TEST(MeshShape, AFlippedPartIsTurned) {
+    for (const auto& flipped : {std::vector<int>{}, second_part}) {
+        const auto shape = two_cuboids({8, 1, 1}, {9, 2, 2}, flipped);
+        EXPECT_TRUE(shape->contains({3.0, 3.0, 3.0}));
+        EXPECT_TRUE(shape->contains({8.5, 1.5, 1.5}));
+        EXPECT_FALSE(shape->contains({7.0, 1.5, 1.5}));
+        EXPECT_NEAR(shape->signed_distance_mm({8.4, 1.5, 1.5}), -0.4, 1e-6);
+    }
+}
+
+TEST(MeshShape, APartInsideAnotherIsACavityWhicheverWayItFaces) {
+    for (const auto& flipped : {std::vector<int>{}, second_part}) {
+        const auto shape = two_cuboids({2, 2, 2}, {4, 4, 4}, flipped);
+        EXPECT_FALSE(shape->contains({3.0, 3.0, 3.0}));
+        EXPECT_NEAR(shape->signed_distance_mm({3.0, 3.0, 3.5}), 0.5, 1e-6);
+        EXPECT_NEAR(shape->signed_distance_mm({1.2, 3.0, 3.0}), -0.8, 1e-6);
+    }
+}
+
+TEST(MeshShape, CrossingPartsAreUnitedWhicheverWayTheyFace) {
+    const openvdb::Vec3d from(4, 3, 2), to(9, 8, 7);
+    for (const auto& flipped : {std::vector<int>{}, second_part}) {
+        const auto shape = two_cuboids(from, to, flipped);
+        EXPECT_TRUE(shape->bounds_mm().max().eq({9, 8, 7}, 1e-6));
+        openvdb::BBoxd box({0, 0, 0}, {9, 8, 7});
+        box.expand(1.0);
+        for (std::uint64_t n = 0; n < 2000; ++n) {
+            const openvdb::Vec3d p = random_point(box, 3, n);
+            const double first = cuboid_distance(p, {0, 0, 0}, {6, 6, 6}), second = cuboid_distance(p, from, to);
+            ASSERT_EQ(shape->contains(p), std::min(first, second) < 0.0) << p;
+            // Outside, the nearest place of a union is the nearer of the parts'.
+            if (std::min(first, second) > 0.0) ASSERT_NEAR(shape->signed_distance_mm(p), std::min(first, second), 1e-6) << p;
+        }
+    }
+}
+
+TEST(MeshShape, PartsThatShareAFaceAreUnited) {
+    const auto shape = two_cuboids({6, 0, 0}, {8, 6, 6}, {});
+    EXPECT_TRUE(shape->contains({6.0, 3.0, 3.0}));
+    EXPECT_NEAR(shape->signed_distance_mm({6.0, 3.0, 3.0}), -2.0, 1e-6);
+}
+
+TEST(MeshShape, APartThatCrossesItselfIsRefusedNamingPlaces) {
+    // One corner is pulled through the opposite side.
+    std::string pulled = obj_cuboid({0, 0, 0}, {2, 2, 2});
+    const std::size_t corner = pulled.find("v 2 2 2");
+    pulled.replace(corner, 7, "v -3 -2 -2.5");
+    const auto message = input_error_of([&] { make_mesh_shape(write_test_file("pulled.obj", pulled), 1.0); });
+    EXPECT_NE(message.find("pulled.obj: intersects itself"), std::string::npos) << message;
+    EXPECT_NE(message.find("of one part cross, near ("), std::string::npos) << message;
+}
+
+TEST(MeshShape, EveryHoleIsNamed) {
+    // Faces 10 and 11 (x = low) and one triangle of the bottom are missing.
+    std::string open = obj_cuboid({0, 0, 0}, {2, 2, 2}, 10);
+    open.erase(open.find("f 1 4 3\n"), 8);
+    const auto message = input_error_of([&] { make_mesh_shape(write_test_file("holes.obj", open), 1.0); });
+    EXPECT_NE(message.find("around 2 holes at ("), std::string::npos) << message;
 }
 
 TEST(MeshShape, FilesThatAreNoMeshAreRefused) {
