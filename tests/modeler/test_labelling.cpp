@@ -139,12 +139,12 @@ TEST(Labelling, SitesWithoutALabelTakeNoPart) {
 }
 
 TEST(Labelling, CountsMoreVoxelsThan32BitsHold) {
-    // 2048 x 2048 x 1024 voxels inside, given as tiles; one leaf on the far corner says where the shape ends.
+    // 2048 x 2048 x 1024 voxels inside, given as tiles; leaves at two corners say where the band ends.
     openvdb::FloatGrid shape(0.3f);
     shape.setTransform(openvdb::math::Transform::createLinearTransform(0.01));
     shape.tree().fill(openvdb::CoordBBox({0, 0, 0}, {2047, 2047, 1023}), -0.3f, false);
     for (const openvdb::Coord& corner : {openvdb::Coord(-8, -8, -8), openvdb::Coord(2048, 2048, 1024)})
-        shape.tree().touchLeaf(corner);
+        shape.tree().setValueOn(corner, 0.3f);
     std::vector<Site> sites = random_sites({openvdb::Vec3d(0.0), openvdb::Vec3d(20.0)}, 20, 0.5, 3);
     const auto one_grain = label_voxels(sites, std::vector<std::int32_t>(sites.size(), 7), shape);
     EXPECT_EQ(one_grain->activeVoxelCount(), std::uint64_t(1) << 32);

@@ -100,21 +100,21 @@ TEST(SimplexNoise, IsSmoothAcrossTetrahedra) {
     EXPECT_GT(change, 0.5);
 }
 
-/// Mean squared difference between places half a feature apart, in the directions of a list, with its standard error from
-/// batches of points in cells far apart.
+/// Mean squared difference between places `lag` apart, in the directions of a list, with its standard error from batches of
+/// places all over many cells.
 struct Variogram {
     double mean, error;
 };
 
-Variogram variogram(const NamedNoise& noise, const std::vector<openvdb::Vec3d>& directions) {
-    constexpr int batches = 50, points = 1000;
+Variogram variogram(const NamedNoise& noise, const std::vector<openvdb::Vec3d>& directions, double lag_length) {
+    constexpr int batches = 100, points = 4000;
     const openvdb::BBoxd box(openvdb::Vec3d(-500.0), openvdb::Vec3d(500.0));
     double sum = 0.0, squares = 0.0;
     for (int batch = 0; batch < batches; ++batch) {
         double mean = 0.0;
         for (int n = 0; n < points; ++n) {
             const openvdb::Vec3d place = random_point(box, 9, std::uint64_t(batch * points + n));
-            const openvdb::Vec3d lag = directions[std::size_t(n) % directions.size()].unit() * 0.5;
+            const openvdb::Vec3d lag = directions[std::size_t(n) % directions.size()].unit() * lag_length;
             const double difference = noise.once(place + lag, {7}, 0) - noise.once(place, {7}, 0);
             mean += difference * difference / points;
         }
@@ -137,11 +137,15 @@ TEST(SimplexNoise, PrefersNoDirectionOfItsLattice) {
     };
     const NamedNoise simplex{"simplex", simplex_noise, fractal_simplex_noise};
     const NamedNoise gradient{"gradient", gradient_noise, fractal_noise};
-    const Variogram along_axes = variogram(simplex, axes);
-    EXPECT_LT(along_axes.error, 0.01 * along_axes.mean);
-    EXPECT_LT(sigmas(along_axes, variogram(simplex, body_diagonals)), 4.0);
-    EXPECT_LT(sigmas(along_axes, variogram(simplex, main_diagonal)), 4.0);
-    EXPECT_GT(sigmas(variogram(gradient, axes), variogram(gradient, body_diagonals)), 4.0);
+    const Variogram along_axes = variogram(simplex, axes, 0.5);
+    EXPECT_LT(along_axes.error, 0.005 * along_axes.mean);
+    EXPECT_LT(sigmas(along_axes, variogram(simplex, body_diagonals, 0.5)), 4.0);
+    EXPECT_LT(sigmas(along_axes, variogram(simplex, main_diagonal, 0.5)), 4.0);
+    const Variogram gradient_axes = variogram(gradient, axes, 1.25),
+                    gradient_diagonals = variogram(gradient, body_diagonals, 1.25);
+    EXPECT_GT(sigmas(gradient_axes, gradient_diagonals), 4.0);
+    EXPECT_NEAR(gradient_axes.mean, 0.1003, 4.0 * gradient_axes.error);
+    EXPECT_NEAR(gradient_diagonals.mean, 0.1036, 4.0 * gradient_diagonals.error);
 }
 
 const openvdb::BBoxd space(openvdb::Vec3d(-10.0), openvdb::Vec3d(10.0));
