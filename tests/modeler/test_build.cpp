@@ -128,9 +128,9 @@ TEST(Build, SinteringByMisorientationGivesGrainsTheirLowestSitesOrientation) {
     std::vector<char> seen(200, 0);
     for (std::size_t n = 0; n < asset.sites.size(); ++n) {
         const auto grain = std::size_t(asset.sites[n].grain) - 1;
-        if (seen[grain] == 0)
-            EXPECT_EQ(asset.grain_orientations[grain], uniform_rotation(3, RandomStream::site_orientations, n + 1));
+        if (seen[grain] != 0) continue;
         seen[grain] = 1;
+        EXPECT_EQ(asset.grain_orientations[grain], uniform_rotation(3, RandomStream::site_orientations, n + 1));
     }
     EXPECT_NE(input_error_of([&] { build(recipe + "area\" }\n"); }).find("preference = \"area\""), std::string::npos);
 }
