@@ -11,6 +11,7 @@ namespace opal {
 namespace {
 
 constexpr int width_px = 1200, height_px = 780;
+constexpr PLINT filled_circle = 17;
 
 struct Color {
     PLINT index, red, green, blue;
@@ -93,7 +94,7 @@ class Canvas {
         pls_.col0(color.index);
         symbol(at, y[n - 1] + t * (y[n] - y[n - 1]));
     }
-    void symbol(double x, double y) { pls_.string(1, &x, &y, "#[0x25cf]"); }
+    void symbol(double x, double y) { pls_.poin(1, &x, &y, filled_circle); }
     void label(const Color& color, double x, double y, const std::string& text) {
         pls_.col0(color.index);
         pls_.schr(0.0, 0.8);
