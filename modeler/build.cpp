@@ -80,8 +80,10 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.n_sphere = recipe.crystal.n_sphere;
     constants.n_medium = recipe.crystal.n_medium;
     constants.coherence_length_um = recipe.crystal.coherence_length_um;
-    constants.absorber = recipe.base_color.absorber;
-    constants.sigma_a_per_mm = absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm);
+    // Without its folder, so that the same input gives the same file wherever it lies.
+    constants.absorber = std::filesystem::path(recipe.base_color.absorber).filename().string();
+    constants.sigma_a_per_mm =
+        absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm, recipe.base_color.sigma_a_reference_nm);
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
