@@ -55,8 +55,10 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.coherence_length_um = recipe.crystal.coherence_length_um;
     constants.stacking_fault_probability = recipe.crystal.stacking_fault_probability;
     constants.mosaic_spread_deg = recipe.crystal.mosaic_spread_deg;
-    constants.absorber = recipe.base_color.absorber;
-    constants.sigma_a_per_mm = absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm);
+    // Without its folder, so that the same input gives the same file wherever it lies.
+    constants.absorber = std::filesystem::path(recipe.base_color.absorber).filename().string();
+    constants.sigma_a_per_mm =
+        absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm, recipe.base_color.sigma_a_reference_nm);
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
