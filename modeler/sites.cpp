@@ -10,7 +10,7 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/random.h"
-#include "modeler/point_grid.h"
+#include "modeler/sample_cells.h"
 #include "modeler/sample_elimination.h"
 
 namespace opal {
