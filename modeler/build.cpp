@@ -92,6 +92,22 @@ void describe_sites(const SiteSet& sites, BuildReport& report) {
     report.relative_radius = sites.relative_radius;
 }
 
+/// Gives the sites their weights, and the asset the field behind them where the recipe asks for it.
+void weigh(const Recipe& recipe, const SiteSet& sites, const Shape& shape, StageRunner& stages, BuildReport& report,
+           OpalAsset& asset) {
+    const GrainsRecipe& grains = recipe.grains;
+    WeighedSites weighed = stages.run("weights", [&] { return weigh_sites(sites, grains, shape); });
+    asset.sites = std::move(weighed.sites);
+    report.weight_scale = weighed.weight_scale;
+    if (weighed.weight_scale < 1.0)
+        stages.warn(
+            fmt::format("weights were multiplied by {:.4g}, so that neighbouring sites differ by less than their shortest "
+                        "distance (grains.limit_weights)",
+                        weighed.weight_scale));
+    if (recipe.output.has(OutputGrid::weight))
+        asset.weight = stages.run("weight_grid", [&] { return make_weight_grid(sites, grains, shape, weighed.weight_scale); });
+}
+
 void describe_sintering(const NeighbourGraph& graph, const std::vector<char>& hidden, const Sintering& sintering,
                         StageRunner& stages, BuildReport& report) {
     const auto visible = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), char(0)));
@@ -134,6 +150,8 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
 
     asset.constants = constants_of(recipe);
     asset.seed = recipe.grains.seed;
+    asset.tessellation = recipe.grains.tessellation;
+    asset.boundary_noise = recipe.grains.boundary_noise;
     asset.recipe_toml = recipe_to_toml(recipe);
     asset.program_version = version_report()["opal"].get<std::string>();
     asset.schema_version = opal_schema_version;
@@ -144,9 +162,9 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     const SiteSet sites = stages.run(
         "sites", [&] { return sample_sites(*shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
     describe_sites(sites, report);
-    asset.sites = stages.run("weights", [&] { return weigh_sites(sites, recipe.grains); });
+    weigh(recipe, sites, *shape, stages, report, asset);
     const std::vector<char> hidden =
-        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, sites.spacing_mm()); });
+        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, sites.spacing_mm(), asset.tessellation); });
 
     const NeighbourGraph graph = stages.run("neighbour_graph", [&] {
         return recipe.grains.sintering.graph == SinteringGraph::delaunay
@@ -159,7 +177,10 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
     asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
-    asset.grain_id = stages.run("labelling", [&] { return label_voxels(asset.sites, sintering.grain_of_site, *asset.shape); });
+    asset.grain_id = stages.run("labelling", [&] {
+        return label_voxels(asset.sites, sintering.grain_of_site, *asset.shape,
+                            {asset.tessellation, asset.boundary_noise, asset.seed});
+    });
     require_voxels(*asset.grain_id, shape->bounds_mm());
     describe_grid(*asset.grain_id, report);
 

@@ -46,6 +46,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
     json["mean_grain_diameter_mm"] = mean_grain_diameter_mm(asset);
     json["shortest_site_distance_mm"] = report.shortest_site_distance_mm;
     json["relative_radius"] = report.relative_radius;
+    json["weight_scale"] = report.weight_scale;
     json["bond_probability"] = report.bond_probability;
     json["percolation_threshold"] =
         report.percolation_threshold ? nlohmann::json(*report.percolation_threshold) : nlohmann::json();

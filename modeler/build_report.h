@@ -24,6 +24,7 @@ struct BuildReport {
     double shape_volume_mm3 = 0.0;
     double shortest_site_distance_mm = 0.0;
     double relative_radius = 0.0;  ///< shortest distance over that of the densest packing
+    double weight_scale = 1.0;     ///< by which all weights were multiplied to limit them
     std::size_t hidden_sites = 0;
     std::size_t bonds = 0;
     std::size_t kept_bonds = 0;

@@ -113,11 +113,39 @@ TEST(Build, DelaunayGraphAndSingleSiteBuildToo) {
 TEST(Build, HiddenSitesAreReportedAndBelongToNoGrain) {
     const BuiltOpal built = build(
         "[shape]\nkind = \"sphere\"\nsize_mm = 4.0\n[grains]\nresolution = 48\nnum_sites = 200\n"
-        "weight = { kind = \"perlin\", amplitude = 20.0, scale_mm = 1.0 }\n");
+        "weight = { kind = \"perlin\", amplitude = 20.0, scale_mm = 1.0 }\nlimit_weights = false\n");
     const auto hidden =
         std::count_if(built.asset.sites.begin(), built.asset.sites.end(), [](const Site& site) { return site.grain == 0; });
     EXPECT_GT(hidden, 20);
     EXPECT_EQ(std::size_t(hidden), built.report.hidden_sites);
+}
+
+TEST(Build, LimitedWeightsAreReported) {
+    const std::string opal =
+        "[shape]\nkind = \"sphere\"\nsize_mm = 4.0\n[grains]\nresolution = 32\nnum_sites = 200\n"
+        "weight = { kind = \"perlin\", amplitude = 20.0, scale_mm = 1.0 }\n";
+    const BuiltOpal built = build(opal);
+    EXPECT_EQ(built.report.hidden_sites, 0u);
+    EXPECT_LT(built.report.weight_scale, 0.5);
+    EXPECT_EQ(report_to_json(built.report, built.asset)["weight_scale"].get<double>(), built.report.weight_scale);
+    ASSERT_FALSE(built.report.warnings.empty());
+    EXPECT_NE(built.report.warnings[0].find("weights were multiplied by"), std::string::npos);
+}
+
+TEST(Build, EveryTessellationBuildsAndStandsInTheAsset) {
+    for (const char* name : {"voronoi", "multiplicative", "manhattan"}) {
+        const BuiltOpal built = build(std::string("[shape]\nkind = \"sphere\"\nsize_mm = 4.0\n[grains]\nresolution = 32\n"
+                                                  "num_sites = 60\nboundary_noise = { amplitude_mm = 0.1 }\n"
+                                                  "tessellation = \"") +
+                                      name + "\"\n[output]\ngrids = [\"grain_id\", \"shape\", \"sites\", \"weight\"]\n");
+        EXPECT_NE(built.asset.tessellation, TessellationKind::additive);
+        EXPECT_EQ(built.asset.boundary_noise.amplitude_mm, 0.1);
+        EXPECT_EQ(built.asset.weight != nullptr, built.asset.tessellation != TessellationKind::voronoi);
+        EXPECT_EQ(built.report.hidden_sites, 0u);
+        std::vector<char> seen(built.asset.num_grains() + 1, 0);
+        for (auto value = built.asset.grain_id->cbeginValueOn(); value; ++value) seen[std::size_t(*value)] = 1;
+        EXPECT_EQ(std::size_t(std::count(seen.begin(), seen.end(), 1)), built.asset.num_grains());
+    }
 }
 
 TEST(Build, WarnsPastThePercolationThreshold) {
@@ -144,7 +172,8 @@ TEST(Build, RefusesWhatCannotBeBuilt) {
                   build("[shape]\nkind = \"sphere\"\nsize_mm = 0.001\n[grains]\nresolution = 512\n");
               }).find("smaller than a .vdb can hold"),
               std::string::npos);
-    EXPECT_NE(error_for("num_sites = 10\nweight = { amplitude = 100.0, scale_mm = 1.0 }\nsintering = { grains = 10 }\n")
+    EXPECT_NE(error_for("num_sites = 10\nlimit_weights = false\nweight = { amplitude = 100.0, scale_mm = 1.0 }\nsintering = { "
+                        "grains = 10 }\n")
                   .find("cannot be reached"),
               std::string::npos);
 }

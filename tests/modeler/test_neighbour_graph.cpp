@@ -113,7 +113,7 @@ TEST(ApolloniusGraph, WithoutWeightsIsDelaunaysInTheInterior) {
     const SiteSet set = sample_sites(*shape, 2000, 5);
     GrainsRecipe recipe;
     recipe.weight[0].kind = WeightKind::none;
-    const std::vector<Site> sites = weigh_sites(set, recipe);
+    const std::vector<Site> sites = weigh_sites(set, recipe, *shape).sites;
     const std::vector<char> hidden(sites.size(), 0);
     const NeighbourGraph apollonius = apollonius_graph(sites, hidden, *shape, set.spacing_mm());
     const NeighbourGraph delaunay = delaunay_graph(sites, hidden);

@@ -118,11 +118,12 @@ TEST(Sintering, DelaunayGraphEqualsTheReference) {
     ShapeRecipe cube;
     cube.kind = ShapeKind::box;
     cube.size_mm = {10.0, 10.0, 10.0};
-    const SiteSet set = sample_sites(*make_shape(cube), 27'000, 1);
+    const auto shape = make_shape(cube);
+    const SiteSet set = sample_sites(*shape, 27'000, 1);
     GrainsRecipe recipe;
     recipe.weight[0].kind = WeightKind::none;
     const std::vector<char> hidden(27'000, 0);
-    const NeighbourGraph graph = delaunay_graph(weigh_sites(set, recipe), hidden);
+    const NeighbourGraph graph = delaunay_graph(weigh_sites(set, recipe, *shape).sites, hidden);
     EXPECT_NEAR(2.0 * double(graph.size()) / 27'000.0, 15.2, 0.3);
     const double rows[4][3] = {{0.05, 0.628, 0.0017}, {0.07, 0.479, 0.0109}, {0.12, 0.196, 0.7108}, {0.22, 0.031, 0.9664}};
     for (const auto& [p, grains_per_site, largest] : rows) {
