@@ -62,8 +62,6 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
-    constants.stacking_fault_probability = recipe.crystal.stacking_fault_probability;
-    constants.mosaic_spread_deg = recipe.crystal.mosaic_spread_deg;
     return constants;
 }
 
