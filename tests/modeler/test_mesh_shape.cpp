@@ -229,7 +229,9 @@ TEST(MeshShape, CrossingPartsAreUnitedWhicheverWayTheyFace) {
             const double first = cuboid_distance(p, {0, 0, 0}, {6, 6, 6}), second = cuboid_distance(p, from, to);
             ASSERT_EQ(shape->contains(p), std::min(first, second) < 0.0) << p;
             // Outside, the nearest place of a union is the nearer of the parts'.
-            if (std::min(first, second) > 0.0) ASSERT_NEAR(shape->signed_distance_mm(p), std::min(first, second), 1e-6) << p;
+            if (std::min(first, second) > 0.0) {
+                ASSERT_NEAR(shape->signed_distance_mm(p), std::min(first, second), 1e-6) << p;
+            }
         }
     }
 }
