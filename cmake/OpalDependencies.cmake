@@ -8,6 +8,7 @@ find_package(OpenVDB REQUIRED)
 # OpenImageIO's CMake files on Debian insist on its command line tools and Python module; pkg-config does not.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(PLplot REQUIRED IMPORTED_TARGET plplot-c++)
 find_package(embree 3 REQUIRED)
 find_package(assimp REQUIRED)
 find_package(fmt REQUIRED)

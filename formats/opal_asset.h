@@ -9,13 +9,15 @@
 #include <vector>
 
 #include "formats/bezier_patch.h"
+#include "formats/random.h"
 #include "formats/recipe.h"
 #include "formats/spectrum.h"
 
 namespace opal {
 
-/// Raised whenever a reader of the previous version could misread a file.
-inline constexpr int opal_schema_version = 1;
+/// Raised whenever a reader of the previous version could misread a file. Version 2 brought coefficients that vary, stacking
+/// faults and mosaic spread, which a reader of version 1 would leave out without a word; and files of sites alone.
+inline constexpr int opal_schema_version = 2;
 
 namespace grid_names {
 inline constexpr const char* grain_id = "grain_id";
@@ -75,10 +77,20 @@ struct OpalAsset {
     std::size_t num_grains() const { return grain_orientations.size(); }
 };
 
-/// Writes the asset atomically: grids grain_id, shape, sites (in this order, points last), blosc-compressed where available, with
-/// schema version, units and full provenance as file metadata. The content depends on the asset alone. Throws InputError where
-/// the output cannot be created, SystemError where writing fails (full disk).
-void write_opal_asset(const OpalAsset& asset, const std::filesystem::path& path);
+/// What goes into a file.
+struct WriteOpalOptions {
+    /// Of the grids that the asset holds, these; `fields` stands for the coefficients that vary.
+    std::vector<OutputGrid> grids = {OutputGrid::grain_id, OutputGrid::shape, OutputGrid::weight, OutputGrid::fields,
+                                     OutputGrid::sites};
+    bool display_twins = false;  ///< add orientation_rgb and grain_id_float, for clients that cannot show integers
+};
+
+/// Writes the asset atomically: grids in the order grain_id, shape, weight, sigma_a_scale, sigma_s_rayleigh_400nm, sigma_s_mie,
+/// orientation_rgb, grain_id_float, sites (points last: NanoVDB's converter stops at them), blosc-compressed where available,
+/// with schema version, units and full provenance as file metadata. The content depends on the asset and the options alone.
+/// Throws InputError where the output cannot be created, where twins are asked for without grain_id, or of more grains than a
+/// float can tell apart; SystemError where writing fails (full disk).
+void write_opal_asset(const OpalAsset& asset, const std::filesystem::path& path, const WriteOpalOptions& options = {});
 
 struct ReadOpalOptions {
     std::uint64_t orientation_seed = 1;  ///< for files that hold no orientations
@@ -87,8 +99,9 @@ struct ReadOpalOptions {
 
 /// Reads and validates an opal .vdb. A foreign file with only `grain_id` (int, or float from a client that has no ints) reads
 /// too: orientations are then drawn from the stated seed, the shape is made from the labelled voxels, constants are the defaults;
-/// each such step appends a line to `notices`. Throws InputError for missing, truncated or foreign files, no grain_id, ids below
-/// 0, broken metadata, schemas newer than ours.
+/// each such step appends a line to `notices`. Files of schema 1 lack what version 2 brought, which then is absent. A file of
+/// sites alone leaves grain_id and shape null. Throws InputError for missing, truncated or foreign files, neither grain_id nor
+/// sites, ids below 0, coefficients that are negative or NaN (naming grid and voxel), broken metadata, schemas newer than ours.
 OpalAsset read_opal_asset(const std::filesystem::path& path, const ReadOpalOptions& options, std::vector<std::string>& notices);
 
 /// What `opal-model check` finds: errors make a file unusable, advice does not.
@@ -97,14 +110,19 @@ struct AssetCheck {
     std::vector<std::string> advice;
 };
 
-/// Checks a file against the schema: grids, types, transforms, ids against sites and grains, level set class and sign, a leaf
-/// that Blender needs, provenance. Throws InputError only where the file cannot be opened as a .vdb.
+/// Checks a file against the schema: grids, types, transforms, ids against sites and grains, level set class and sign, fields
+/// that cover the shape, twins that agree, a leaf that Blender needs, provenance. Throws InputError only where the file cannot be
+/// opened as a .vdb.
 AssetCheck check_opal_asset(const std::filesystem::path& path);
 
 /// Makes OpenVDB's grid and attribute types known; called by every function here.
 void initialize_openvdb();
 
-/// A uniformly random rotation for (seed, grain): Shoemake 1992, "Uniform random rotations", Graphics Gems III.
+/// A uniformly random rotation, a pure function of (seed, stream, index): Shoemake 1992, "Uniform random rotations", Graphics
+/// Gems III.
+openvdb::math::Quat<float> uniform_rotation(std::uint64_t seed, RandomStream stream, std::uint64_t index);
+
+/// The uniformly random rotation of a grain; `foreign` files have draws of their own.
 openvdb::math::Quat<float> random_orientation(std::uint64_t seed, bool foreign, std::uint64_t grain);
 
 /// A repeatable display colour of a grain: hue by the golden angle, constant lightness.

@@ -31,6 +31,13 @@ inline constexpr const char* sigma_s_rayleigh = "sigma_s_rayleigh_400nm_per_mm";
 inline constexpr const char* sigma_s_mie = "sigma_s_mie_per_mm";
 inline constexpr const char* mie_asymmetry = "mie_asymmetry";
 inline constexpr const char* bezier_patches = "bezier_patches";
+inline constexpr const char* stacking_fault_probability = "stacking_fault_probability";
+inline constexpr const char* mosaic_spread_deg = "mosaic_spread_deg";
+inline constexpr const char* tessellation = "tessellation";
+inline constexpr const char* boundary_noise_amplitude_mm = "boundary_noise_amplitude_mm";
+inline constexpr const char* boundary_noise_scale_mm = "boundary_noise_scale_mm";
+inline constexpr const char* boundary_noise_octaves = "boundary_noise_octaves";
+inline constexpr const char* orientations = "orientations";
 }  // namespace metadata_keys
 
 /// A .vdb as it lies on disk, before anything is asked of it.

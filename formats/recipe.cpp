@@ -8,6 +8,7 @@
 
 #include "formats/recipe_names.h"
 #include "formats/toml_reader.h"
+#include "formats/units.h"
 
 namespace opal {
 namespace {
@@ -181,6 +182,10 @@ GrainsRecipe read_grains(TomlSection section, int& resolution) {
     grains.boundary_noise = read_boundary_noise(section.section("boundary_noise"));
     grains.sintering = read_sintering(section.section("sintering"), grains);
     grains.orientation = read_orientation(section.section("orientation"));
+    if (grains.orientation.kind == OrientationKind::table && grains.sintering.preference == BondPreference::misorientation)
+        section.fail("orientation",
+                     "a table orients finished grains; preference = \"misorientation\" needs sites that have "
+                     "orientations before: kind \"uniform\" or \"fibre\"");
     section.finish();
     return grains;
 }
@@ -224,6 +229,8 @@ BaseColorRecipe read_base_color(TomlSection section) {
     color.absorber = section.text("absorber", color.absorber);
     if (color.absorber.ends_with(".csv")) color.absorber = section.path("absorber").string();
     color.sigma_a_per_mm = section.number("sigma_a_per_mm", color.sigma_a_per_mm, coefficient);
+    color.sigma_a_reference_nm = section.number("sigma_a_reference_nm", color.sigma_a_reference_nm,
+                                                NumberRange::between(units::wavelength_min_nm, units::wavelength_max_nm));
     color.sigma_s_rayleigh_400nm_per_mm = section.number("sigma_s_rayleigh_400nm_per_mm", 0.0, coefficient);
     color.sigma_s_mie_per_mm = section.number("sigma_s_mie_per_mm", 0.0, coefficient);
     color.mie_asymmetry = section.number("mie_asymmetry", color.mie_asymmetry, NumberRange::between(-0.99, 0.99));

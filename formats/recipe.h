@@ -73,7 +73,7 @@ struct OrientationRecipe {
     OrientationKind kind = OrientationKind::uniform;
     std::array<double, 3> axis = {0, 0, 1};     ///< fibre: direction in the opal
     std::array<double, 3> lattice = {1, 1, 1};  ///< fibre: lattice direction that lies along the axis
-    double spread_deg = 10.0;                   ///< fibre: standard deviation of the tilt away from it
+    double spread_deg = 10.0;                   ///< fibre: angular standard deviation of the tilt away from it
     std::filesystem::path file;                 ///< table: .csv with grain,x,y,z,w
 };
 
@@ -113,7 +113,8 @@ struct FieldRecipe {
 
 struct BaseColorRecipe {
     std::string absorber = "carbon";  ///< a built-in name, or a .csv's path
-    double sigma_a_per_mm = 0.25;     ///< at 550 nm, or at the absorber's strongest where it has none there
+    double sigma_a_per_mm = 0.25;     ///< at the reference wavelength; the spectrum is scaled to it
+    double sigma_a_reference_nm = 550.0;
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
     double sigma_s_mie_per_mm = 0.0;
     double mie_asymmetry = 0.8;  ///< Henyey-Greenstein g of the Mie-like part

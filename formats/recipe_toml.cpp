@@ -122,10 +122,11 @@ std::string field_to_toml(const std::string& key, const FieldRecipe& field) {
 
 std::string base_color_to_toml(const BaseColorRecipe& color) {
     return fmt::format(
-               "\n[base_color]\nabsorber = {}\nsigma_a_per_mm = {}\nsigma_s_rayleigh_400nm_per_mm = {}\n"
+               "\n[base_color]\nabsorber = {}\nsigma_a_per_mm = {}\nsigma_a_reference_nm = {}\nsigma_s_rayleigh_400nm_per_mm = "
+               "{}\n"
                "sigma_s_mie_per_mm = {}\nmie_asymmetry = {}\n",
-               quoted_file(color.absorber), real(color.sigma_a_per_mm), real(color.sigma_s_rayleigh_400nm_per_mm),
-               real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry)) +
+               quoted_file(color.absorber), real(color.sigma_a_per_mm), real(color.sigma_a_reference_nm),
+               real(color.sigma_s_rayleigh_400nm_per_mm), real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry)) +
            field_to_toml("sigma_a_field", color.sigma_a_field) +
            field_to_toml("sigma_s_rayleigh_field", color.sigma_s_rayleigh_field) +
            field_to_toml("sigma_s_mie_field", color.sigma_s_mie_field);

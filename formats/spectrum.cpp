@@ -10,8 +10,6 @@
 #include <sstream>
 
 #include "formats/error.h"
-#include "formats/text.h"
-#include "formats/units.h"
 
 namespace opal {
 
@@ -22,24 +20,6 @@ double SampledSpectrum::at(double wavelength) const {
                                                    wavelength_nm.begin());
     const double t = (wavelength - wavelength_nm[i - 1]) / (wavelength_nm[i] - wavelength_nm[i - 1]);
     return value[i - 1] + t * (value[i] - value[i - 1]);
-}
-
-const std::vector<std::string>& builtin_absorbers() {
-    static const std::vector<std::string> names = {"carbon", "neutral"};
-    return names;
-}
-
-SampledSpectrum builtin_absorber(const std::string& name) {
-    const auto& names = builtin_absorbers();
-    if (std::find(names.begin(), names.end(), name) == names.end())
-        throw InputError(fmt::format("absorber '{}' is not known; allowed: {}, or the path of a .csv file{}", name, join(names),
-                                     did_you_mean(name, names)));
-    SampledSpectrum spectrum;
-    for (double wavelength = units::wavelength_min_nm; wavelength <= units::wavelength_max_nm; wavelength += 10.0) {
-        spectrum.wavelength_nm.push_back(wavelength);
-        spectrum.value.push_back(name == "carbon" ? 550.0 / wavelength : 1.0);
-    }
-    return spectrum;
 }
 
 SampledSpectrum read_spectrum_csv(const std::filesystem::path& path) {
@@ -74,16 +54,6 @@ SampledSpectrum read_spectrum_csv(const std::filesystem::path& path) {
     }
     if (spectrum.value.size() < 2)
         throw InputError(fmt::format("{}: {} samples; at least 2 are needed", path.string(), spectrum.value.size()));
-    return spectrum;
-}
-
-SampledSpectrum absorber_spectrum(const std::string& name_or_path, double value_at_550nm) {
-    SampledSpectrum spectrum = name_or_path.ends_with(".csv") ? read_spectrum_csv(name_or_path) : builtin_absorber(name_or_path);
-    const double reference = spectrum.at(550.0);
-    if (value_at_550nm > 0.0 && !(reference > 0.0))
-        throw InputError(fmt::format("absorber '{}': zero at 550 nm, so sigma_a_per_mm cannot scale it", name_or_path));
-    const double scale = value_at_550nm > 0.0 ? value_at_550nm / reference : 0.0;
-    for (double& value : spectrum.value) value *= scale;
     return spectrum;
 }
 

@@ -14,6 +14,8 @@
 namespace opal {
 namespace {
 
+using Metric = TessellationMetric<TessellationKind::additive>;
+
 /// Blocks up to this many spacings wide are searched by one task, level by level: faces are met while blocks are large, and what
 /// is known then need not be looked for again in smaller ones.
 constexpr double task_size = 4.0;
@@ -58,7 +60,7 @@ class PairSet {
 
 class FaceSearch {
   public:
-    FaceSearch(const SiteCulling& culling, const Shape& shape, double spacing_mm)
+    FaceSearch(const SiteCulling<Metric>& culling, const Shape& shape, double spacing_mm)
         : culling_(culling), shape_(shape), spacing_mm_(spacing_mm), tolerance_mm_(1.0e-9 * spacing_mm) {}
 
     /// Divides space until blocks are small enough for a task of their own.
@@ -159,8 +161,8 @@ class FaceSearch {
             const openvdb::Vec3d across = from_a - (x - site_b.position_mm).unitSafe();
             const double steepness = across.lengthSqr();
             if (!(steepness > 0.0)) return false;
-            const double delta_a_mm = weighted_distance_mm(x, site_a);
-            const double difference_mm = delta_a_mm - weighted_distance_mm(x, site_b);
+            const double delta_a_mm = Metric::delta_mm(x, site_a);
+            const double difference_mm = delta_a_mm - Metric::delta_mm(x, site_b);
             openvdb::Vec3d move = across * (-difference_mm / steepness);
             if (std::abs(difference_mm) <= tolerance_mm_) {
                 const Rival rival = strongest_rival(x, candidates, a, b);
@@ -189,7 +191,7 @@ class FaceSearch {
         Rival rival{a, std::numeric_limits<double>::infinity()};
         for (const std::int32_t c : candidates) {
             if (c == a || c == b) continue;
-            const double delta_mm = weighted_distance_mm(x, site(c));
+            const double delta_mm = Metric::delta_mm(x, site(c));
             if (delta_mm < rival.delta_mm) rival = {c, delta_mm};
         }
         return rival;
@@ -197,7 +199,7 @@ class FaceSearch {
 
     const Site& site(std::int32_t index) const { return culling_.sites()[static_cast<std::size_t>(index)]; }
 
-    const SiteCulling& culling_;
+    const SiteCulling<Metric>& culling_;
     const Shape& shape_;
     double spacing_mm_;
     double tolerance_mm_;
@@ -213,7 +215,7 @@ NeighbourGraph apollonius_graph(const std::vector<Site>& sites, const std::vecto
         if (hidden[n] == 0) visible.push_back(static_cast<std::int32_t>(n));
     const openvdb::BBoxd bounds_mm = shape.bounds_mm();
     const openvdb::Vec3d extents_mm = bounds_mm.extents();
-    const SiteCulling culling(sites, bounds_mm);
+    const SiteCulling<Metric> culling(sites, bounds_mm);
     FaceSearch search(culling, shape, spacing_mm);
     search.visit(bounds_mm.getCenter(), std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}), false, visible);
     throw_if_interrupted();

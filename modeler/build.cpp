@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/command.h"
 #include "formats/error.h"
+#include "formats/field_summary.h"
 #include "formats/report.h"
+#include "modeler/base_color_fields.h"
+#include "modeler/grain_growth.h"
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
-#include "modeler/neighbour_graph.h"
 #include "modeler/shape.h"
-#include "modeler/sintering.h"
-#include "modeler/sites.h"
-#include "modeler/weights.h"
+#include "modeler/site_network.h"
+#include "modeler/stage_runner.h"
 
 namespace opal {
 namespace {
@@ -28,31 +28,6 @@ constexpr double min_voxel_size_mm = 1.5e-5;
 /// A grain with more than this part of the sites deserves a warning, in an opal of more than so many sites.
 constexpr double large_grain_fraction = 0.2;
 constexpr std::size_t few_sites = 50;
-
-/// Runs stages, timing and announcing them.
-class StageRunner {
-  public:
-    StageRunner(BuildReport& report, const BuildListener& listener) : report_(report), listener_(listener) {}
-
-    template <typename Work>
-    auto run(const std::string& stage, const Work& work) {
-        throw_if_interrupted();
-        listener_(stage);
-        const Stopwatch watch;
-        auto result = work();
-        report_.stages.push_back({stage, watch.seconds()});
-        return result;
-    }
-
-    void warn(const std::string& warning) {
-        report_.warnings.push_back(warning);
-        listener_("warning: " + warning);
-    }
-
-  private:
-    BuildReport& report_;
-    const BuildListener& listener_;
-};
 
 double resolve_voxel_size_mm(const Recipe& recipe, const openvdb::BBoxd& bounds_mm) {
     const openvdb::Vec3d extents_mm = bounds_mm.extents();
@@ -78,8 +53,12 @@ OpalConstants constants_of(const Recipe& recipe) {
     constants.n_sphere = recipe.crystal.n_sphere;
     constants.n_medium = recipe.crystal.n_medium;
     constants.coherence_length_um = recipe.crystal.coherence_length_um;
-    constants.absorber = recipe.base_color.absorber;
-    constants.sigma_a_per_mm = absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm);
+    constants.stacking_fault_probability = recipe.crystal.stacking_fault_probability;
+    constants.mosaic_spread_deg = recipe.crystal.mosaic_spread_deg;
+    // Without its folder, so that the same input gives the same file wherever it lies.
+    constants.absorber = std::filesystem::path(recipe.base_color.absorber).filename().string();
+    constants.sigma_a_per_mm =
+        absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm, recipe.base_color.sigma_a_reference_nm);
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
@@ -92,24 +71,23 @@ void describe_sites(const SiteSet& sites, BuildReport& report) {
     report.relative_radius = sites.relative_radius;
 }
 
-void describe_sintering(const NeighbourGraph& graph, const std::vector<char>& hidden, const Sintering& sintering,
-                        StageRunner& stages, BuildReport& report) {
-    const auto visible = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), char(0)));
-    report.hidden_sites = hidden.size() - visible;
-    report.bonds = graph.size();
+void describe_sintering(const SiteNetwork& network, const Sintering& sintering, StageRunner& stages, BuildReport& report) {
+    report.hidden_sites = network.hidden.size() - network.num_visible();
+    report.bonds = network.graph.size();
     report.kept_bonds = sintering.num_kept_bonds;
-    report.mean_degree = 2.0 * static_cast<double>(graph.size()) / static_cast<double>(visible);
+    report.mean_degree = network.mean_degree();
     report.bond_probability = sintering.probability;
     report.largest_grain_fraction = sintering.largest_grain_fraction;
     report.percolation_threshold = sintering.threshold;
-    if (hidden.size() > few_sites && sintering.largest_grain_fraction > large_grain_fraction)
-        stages.warn(fmt::format("one grain holds {:.0f} % of the opal's sites (p {:.3g}; this graph percolates near p = {:.3g})",
+    if (network.sites.size() > few_sites && sintering.largest_grain_fraction > large_grain_fraction)
+        stages.warn(fmt::format("one grain holds {:.0f} % of the opal's sites (p {:.3g}, threshold about {:.2g})",
                                 100.0 * sintering.largest_grain_fraction, sintering.probability,
                                 sintering.threshold.value_or(1.0)));
 }
 
 void describe_grid(const openvdb::Int32Grid& grain_id, BuildReport& report) {
     report.voxels = grain_id.activeVoxelCount();
+    report.voxels_in_box = grain_id.evalActiveVoxelBoundingBox().volume();
     report.leaves = grain_id.tree().leafCount();
     report.tiles = grain_id.tree().activeTileCount();
 }
@@ -123,53 +101,76 @@ void require_voxels(const openvdb::Int32Grid& grain_id, const openvdb::BBoxd& bo
                     grain_id.voxelSize().x(), size_mm.x(), size_mm.y(), size_mm.z()));
 }
 
+/// A file of sites alone takes no voxels, whatever their size.
+bool needs_voxels(const OutputRecipe& output) {
+    return output.grids != std::vector<OutputGrid>{OutputGrid::sites};
+}
+
+bool has_fields(const BaseColorRecipe& color) {
+    return color.sigma_a_field.kind != FieldKind::constant || color.sigma_s_rayleigh_field.kind != FieldKind::constant ||
+           color.sigma_s_mie_field.kind != FieldKind::constant;
+}
+
 }  // namespace
 
-BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
+BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, const std::optional<SceneFit>& scene_fit) {
     initialize_openvdb();
+    Recipe recipe = asked_for;
+    if (recipe.output.for_blender && !recipe.output.has(OutputGrid::grain_id))
+        throw InputError("output.for_blender: its display twins are made from grain_id, which output.grids leaves out");
     BuiltOpal built;
     OpalAsset& asset = built.asset;
     BuildReport& report = built.report;
     StageRunner stages(report, listener);
 
-    asset.constants = constants_of(recipe);
-    asset.seed = recipe.grains.seed;
-    asset.recipe_toml = recipe_to_toml(recipe);
     asset.program_version = version_report()["opal"].get<std::string>();
     asset.schema_version = opal_schema_version;
 
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
-    const double voxel_size_mm = resolve_voxel_size_mm(recipe, shape->bounds_mm());
+    if (scene_fit)
+        report.scene_needs =
+            fit_to_scene(recipe, scene_fit->scene, scene_fit->output, shape->bounds_mm(), scene_fit->accepted_error_pixels);
+    asset.constants = constants_of(recipe);
+    asset.seed = recipe.grains.seed;
+    asset.tessellation = recipe.grains.tessellation;
+    asset.boundary_noise = recipe.grains.boundary_noise;
+    asset.recipe_toml = recipe_to_toml(recipe);
+    const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
-    const SiteSet sites = stages.run("sites", [&] { return sample_sites(*shape, recipe.grains); });
-    for (const std::string& warning : sites.warnings) stages.warn(warning);
-    describe_sites(sites, report);
-    asset.sites = stages.run("weights", [&] { return weigh_sites(sites, recipe.grains); });
-    const std::vector<char> hidden =
-        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, sites.spacing_mm()); });
-
-    const NeighbourGraph graph = stages.run("neighbour_graph", [&] {
-        return recipe.grains.sintering.graph == SinteringGraph::delaunay
-                   ? delaunay_graph(asset.sites, hidden)
-                   : apollonius_graph(asset.sites, hidden, *shape, sites.spacing_mm());
-    });
-    const Sintering sintering =
-        stages.run("sintering", [&] { return sinter(graph, hidden, recipe.grains.sintering, recipe.grains.seed); });
-    describe_sintering(graph, hidden, sintering, stages, report);
+    SiteNetwork network = make_site_network(recipe, *shape, stages);
+    for (const std::string& warning : network.site_set.warnings) stages.warn(warning);
+    describe_sites(network.site_set, report);
+    const GrainGrowth growth = grow_grains(recipe, network, stages);
+    const Sintering& sintering = growth.sintering;
+    describe_sintering(network, sintering, stages, report);
+    report.weight_scale = network.weight_scale;
+    asset.sites = std::move(network.sites);
+    asset.weight = network.weight_grid;
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
     asset.bezier_patches = shape->bezier_patches();
-    asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
-    asset.grain_id = stages.run("labelling", [&] { return label_voxels(asset.sites, sintering.grain_of_site, *asset.shape); });
-    require_voxels(*asset.grain_id, shape->bounds_mm());
-    describe_grid(*asset.grain_id, report);
+    if (has_fields(recipe.base_color) && !recipe.output.has(OutputGrid::fields))
+        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
+    if (needs_voxels(recipe.output)) {
+        asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
+        const auto label = [&](const openvdb::FloatGrid& level_set) {
+            return label_voxels(asset.sites, sintering.grain_of_site, level_set,
+                                {asset.tessellation, asset.boundary_noise, asset.seed});
+        };
+        if (recipe.output.has(OutputGrid::grain_id)) {
+            asset.grain_id = stages.run("labelling", [&] { return label(*asset.shape); });
+            require_voxels(*asset.grain_id, shape->bounds_mm());
+            describe_grid(*asset.grain_id, report);
+        }
+        if (recipe.output.has(OutputGrid::fields) && has_fields(recipe.base_color))
+            stages.run("fields", [&] {
+                add_base_color_fields(recipe.base_color, *shape, label, asset);
+                return varying_coefficients(asset).size();
+            });
+    }
 
-    asset.grain_orientations = stages.run("orientations", [&] {
-        std::vector<openvdb::math::Quat<float>> orientations;
-        for (std::int32_t grain = 1; grain <= sintering.num_grains; ++grain)
-            orientations.push_back(random_orientation(recipe.grains.seed, false, static_cast<std::uint64_t>(grain)));
-        return orientations;
-    });
+    asset.grain_orientations = growth.grain_orientations;
+    report.grain_statistics = stages.run("grain_statistics", [&] { return grain_statistics(asset, network.graph); });
     return built;
 }
 

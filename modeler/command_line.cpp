@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "formats/atomic_file.h"
 #include "formats/command.h"
@@ -14,8 +15,11 @@
 #include "formats/opal_asset.h"
 #include "formats/recipe.h"
 #include "formats/report.h"
+#include "formats/scene.h"
 #include "formats/text.h"
 #include "modeler/build.h"
+#include "modeler/command_percolation.h"
+#include "modeler/command_section.h"
 #include "modeler/info.h"
 
 namespace opal {
@@ -26,7 +30,10 @@ struct BuildArguments {
     std::string output_file;
     std::vector<std::string> overrides;
     std::string report_file;
+    std::string scene_file;
+    double accepted_error_pixels = 1.0;
     int threads = 0;
+    bool for_blender = false;
 };
 
 struct FileArguments {
@@ -40,10 +47,13 @@ Exit codes: 0 success, 2 bad input, 1 other failures.
 Examples:
   opal-model build recipe.toml -o opal.vdb
   opal-model build recipe.toml -o opal.vdb --set grains.num_sites=2000 --set shape.size_mm=[14.0,10.0,5.0] --report report.json
+  opal-model build recipe.toml -o opal.vdb --for scene.toml
+  opal-model section opal.vdb --axis x -o section.png
   opal-model info opal.vdb
-  opal-model check opal.vdb)";
+  opal-model check opal.vdb
+  opal-model percolation recipe.toml -o percolation.csv --plot percolation.png)";
 
-const std::vector<std::string> command_names = {"build", "info", "check"};
+const std::vector<std::string> command_names = {"build", "info", "check", "section", "percolation"};
 
 void say(const std::string& message) {
     fmt::print(stderr, "opal-model: {}\n", message);
@@ -60,12 +70,17 @@ int run_build(const BuildArguments& arguments) {
         thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                              static_cast<std::size_t>(arguments.threads));
     catch_interrupts();
-    BuiltOpal built = build_opal(read_recipe(arguments.recipe_file, arguments.overrides), say);
+    std::optional<SceneFit> scene_fit;
+    if (!arguments.scene_file.empty())
+        scene_fit = SceneFit{read_scene(arguments.scene_file, {}), output, arguments.accepted_error_pixels};
+    Recipe recipe = read_recipe(arguments.recipe_file, arguments.overrides);
+    recipe.output.for_blender = recipe.output.for_blender || arguments.for_blender;
+    BuiltOpal built = build_opal(recipe, say, scene_fit);
 
     throw_if_interrupted();
     say("write");
     const Stopwatch watch;
-    write_opal_asset(built.asset, output);
+    write_opal_asset(built.asset, output, {recipe.output.grids, recipe.output.for_blender});
     built.report.stages.push_back({"write", watch.seconds()});
     if (!arguments.report_file.empty()) write_report(arguments.report_file, report_to_json(built.report, built.asset));
     fmt::print("{}file     {}, {:.2f} MB\n", report_summary(built.report, built.asset), output.string(),
@@ -121,9 +136,21 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
     build->add_option("--set", arguments.overrides, "override a recipe key, e.g. grains.num_sites=1000; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
+    build
+        ->add_option("--for", arguments.scene_file,
+                     "model no more than this scene's picture shows: voxels from its pixels' size at the gem, no fields or grids "
+                     "without effect; the report says what was saved and which error is accepted")
+        ->type_name("SCENE.toml");
+    build
+        ->add_option("--for-pixels", arguments.accepted_error_pixels,
+                     "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
+        ->check(CLI::Range(0.01, 100.0))
+        ->type_name("PIXELS");
     build->add_option("--threads", arguments.threads, "threads to use (default: all); the result is the same for any number")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
+    build->add_flag("--for-blender", arguments.for_blender,
+                    "add grain_id_float and orientation_rgb, twins of what Blender cannot show (the key output.for_blender)");
     build->add_option("--report", arguments.report_file, "write times, counts, versions and the resolved recipe as JSON")
         ->type_name("FILE.json");
     finish_command(*build);
@@ -144,9 +171,13 @@ int run_opal_model(int argc, char** argv) {
     finish_command(app);
     BuildArguments build;
     FileArguments info, check;
+    SectionArguments section;
     add_build(app, build);
     add_file_command(app, "info", "Say what an opal .vdb holds (sizes in mm)", info, true);
     add_file_command(app, "check", "Check an opal .vdb against the schema; exit code 2 where it is unusable", check, false);
+    finish_command(*add_section(app, section));
+    PercolationArguments percolation;
+    finish_command(*add_percolation(app, percolation));
     require_known_command(argc, argv);
     try {
         app.parse(argc, argv);
@@ -157,6 +188,8 @@ int run_opal_model(int argc, char** argv) {
     }
     if (app.got_subcommand("build")) return run_build(build);
     if (app.got_subcommand("info")) return run_info(info);
+    if (app.got_subcommand("section")) return run_section(section);
+    if (app.got_subcommand("percolation")) return run_percolation(percolation, say);
     return run_check(check);
 }
 

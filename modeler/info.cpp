@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "formats/field_summary.h"
+#include "formats/recipe_names.h"
+#include "formats/text.h"
 #include "formats/units.h"
 #include "modeler/build_report.h"
 
@@ -27,53 +31,143 @@ nlohmann::json describe_constants(const OpalConstants& constants) {
             {"sigma_a_550nm_per_mm", constants.sigma_a_per_mm.at(550.0)},
             {"sigma_s_rayleigh_400nm_per_mm", constants.sigma_s_rayleigh_400nm_per_mm},
             {"sigma_s_mie_per_mm", constants.sigma_s_mie_per_mm},
-            {"mie_asymmetry", constants.mie_asymmetry}};
+            {"mie_asymmetry", constants.mie_asymmetry},
+            {"stacking_fault_probability", constants.stacking_fault_probability},
+            {"mosaic_spread_deg", constants.mosaic_spread_deg}};
+}
+
+nlohmann::json vector_json(const openvdb::Vec3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+/// Sizes in mm; null where a file of sites alone does not tell.
+nlohmann::json describe_voxels(const OpalAsset& asset) {
+    if (!asset.grain_id)
+        return {{"size_mm", nullptr},
+                {"lowest_corner_mm", nullptr},
+                {"volume_mm3", nullptr},
+                {"voxel_size_mm", nullptr},
+                {"voxels", 0},
+                {"leaves", 0},
+                {"mean_grain_diameter_mm", nullptr}};
+    const openvdb::Int32Grid& grain_id = *asset.grain_id;
+    const openvdb::Vec3d voxel_mm = grain_id.voxelSize();
+    const openvdb::CoordBBox voxels = grain_id.evalActiveVoxelBoundingBox();
+    const auto active = grain_id.activeVoxelCount();
+    return {{"size_mm", vector_json(voxels.extents().asVec3d() * voxel_mm)},
+            {"lowest_corner_mm", vector_json(grain_id.indexToWorld(voxels.min().asVec3d() - openvdb::Vec3d(0.5)))},
+            {"volume_mm3", static_cast<double>(active) * voxel_mm.product()},
+            {"voxel_size_mm", voxel_mm.x()},
+            {"voxels", active},
+            {"leaves", grain_id.tree().leafCount()},
+            {"mean_grain_diameter_mm", mean_grain_diameter_mm(asset)}};
+}
+
+/// Smallest, largest and mean value of each coefficient that varies.
+nlohmann::json describe_fields(const OpalAsset& asset) {
+    nlohmann::json fields = nlohmann::json::object();
+    for (const auto& [name, field] : varying_coefficients(asset)) {
+        const FieldSummary summary = summarize_field(*field, asset.shape);
+        fields[name] = {{"min", summary.min},
+                        {"mean", summary.mean},
+                        {"max", summary.max},
+                        {"voxel_size_mm", field->voxelSize().x()},
+                        {"voxels", field->activeVoxelCount()}};
+    }
+    return fields;
+}
+
+std::string fields_text(const nlohmann::json& fields) {
+    std::string text;
+    for (const auto& [name, field] : fields.items())
+        text += fmt::format("field       {}: {:.4g} to {:.4g}, {:.4g} on average; {} voxels of {:.4g} mm\n", name,
+                            field["min"].get<double>(), field["max"].get<double>(), field["mean"].get<double>(),
+                            field["voxels"].get<std::uint64_t>(), field["voxel_size_mm"].get<double>());
+    return text;
+}
+
+std::string size_text(const nlohmann::json& d) {
+    if (d["size_mm"].is_null()) return "size        not known: sites alone, no voxels\n";
+    const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
+    std::string text = fmt::format("size        {:.4g} x {:.4g} x {:.4g} mm, {:.4g} mm^3\nextent     ", number(d["size_mm"][0]),
+                                   number(d["size_mm"][1]), number(d["size_mm"][2]), number(d["volume_mm3"]));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low_mm = number(d["lowest_corner_mm"][axis]);
+        text += fmt::format(" {} {:.4g} to {:.4g}{}", "xyz"[axis], low_mm, low_mm + number(d["size_mm"][axis]),
+                            axis < 2 ? "," : " mm\n");
+    }
+    return text + fmt::format("voxels      {} of {:.4g} mm, in {} leaves\n", d["voxels"].get<std::uint64_t>(),
+                              number(d["voxel_size_mm"]), d["leaves"].get<std::uint64_t>());
+}
+
+std::string tessellation_text(const nlohmann::json& tessellation) {
+    const double amplitude_mm = tessellation["boundary_noise_amplitude_mm"].get<double>();
+    const std::string noise = amplitude_mm > 0.0
+                                  ? fmt::format("; boundaries displaced by up to {:.4g} mm, features of {:.4g} mm, {} octaves",
+                                                amplitude_mm, tessellation["boundary_noise_scale_mm"].get<double>(),
+                                                tessellation["boundary_noise_octaves"].get<int>())
+                                  : std::string();
+    return fmt::format("cells       {}{}\n", tessellation["kind"].get<std::string>(), noise);
+}
+
+std::vector<std::string> grids_in(const OpalAsset& asset) {
+    const std::pair<const char*, bool> grids[] = {{grid_names::grain_id, asset.grain_id != nullptr},
+                                                  {grid_names::shape, asset.shape != nullptr},
+                                                  {grid_names::weight, asset.weight != nullptr},
+                                                  {grid_names::sigma_a_scale, asset.sigma_a_scale != nullptr},
+                                                  {grid_names::sigma_s_rayleigh, asset.sigma_s_rayleigh_400nm != nullptr},
+                                                  {grid_names::sigma_s_mie, asset.sigma_s_mie != nullptr},
+                                                  {grid_names::sites, !asset.sites.empty()}};
+    std::vector<std::string> names;
+    for (const auto& [name, there] : grids)
+        if (there) names.push_back(name);
+    return names;
 }
 
 }  // namespace
 
 nlohmann::json describe_opal(const OpalAsset& asset) {
-    const openvdb::Vec3d voxel_mm = asset.grain_id->voxelSize();
-    const openvdb::CoordBBox voxels = asset.grain_id->evalActiveVoxelBoundingBox();
-    const openvdb::Vec3d size_mm = voxels.extents().asVec3d() * voxel_mm;
-    const openvdb::Vec3d low_mm = asset.grain_id->indexToWorld(voxels.min().asVec3d() - openvdb::Vec3d(0.5));
-    const auto active = asset.grain_id->activeVoxelCount();
     const auto hidden = std::count_if(asset.sites.begin(), asset.sites.end(), [](const Site& site) { return site.grain == 0; });
-    return {{"size_mm", {size_mm.x(), size_mm.y(), size_mm.z()}},
-            {"lowest_corner_mm", {low_mm.x(), low_mm.y(), low_mm.z()}},
-            {"volume_mm3", static_cast<double>(active) * asset.grain_id->voxelSize().product()},
-            {"voxel_size_mm", voxel_mm.x()},
-            {"voxels", active},
-            {"leaves", asset.grain_id->tree().leafCount()},
-            {"sites", asset.sites.size()},
-            {"hidden_sites", hidden},
-            {"grains", asset.num_grains()},
-            {"mean_grain_diameter_mm", mean_grain_diameter_mm(asset)},
-            {"constants", describe_constants(asset.constants)},
-            {"seed", asset.seed},
-            {"program_version", asset.program_version},
-            {"schema_version", asset.schema_version},
-            {"recipe", asset.recipe_toml}};
+    nlohmann::json description = describe_voxels(asset);
+    description["grids"] = grids_in(asset);
+    description["sites"] = asset.sites.size();
+    description["hidden_sites"] = hidden;
+    description["grains"] = asset.num_grains();
+    description["tessellation"] = {{"kind", recipe_names::name(recipe_names::tessellations, asset.tessellation)},
+                                   {"boundary_noise_amplitude_mm", asset.boundary_noise.amplitude_mm},
+                                   {"boundary_noise_scale_mm", asset.boundary_noise.scale_mm},
+                                   {"boundary_noise_octaves", asset.boundary_noise.octaves}};
+    description["constants"] = describe_constants(asset.constants);
+    description["fields"] = describe_fields(asset);
+    description["seed"] = asset.seed;
+    description["program_version"] = asset.program_version;
+    description["schema_version"] = asset.schema_version;
+    description["recipe"] = asset.recipe_toml;
+    return description;
 }
 
 std::string opal_info_text(const nlohmann::json& d) {
     const nlohmann::json& c = d["constants"];
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
-    std::string text = fmt::format("size        {:.4g} x {:.4g} x {:.4g} mm, {:.4g} mm^3\n", number(d["size_mm"][0]),
-                                   number(d["size_mm"][1]), number(d["size_mm"][2]), number(d["volume_mm3"]));
-    text += fmt::format("voxels      {} of {:.4g} mm, in {} leaves\n", d["voxels"].get<std::uint64_t>(),
-                        number(d["voxel_size_mm"]), d["leaves"].get<std::uint64_t>());
-    text += fmt::format("grains      {}, {:.3g} mm across on average\n", d["grains"].get<std::uint64_t>(),
-                        number(d["mean_grain_diameter_mm"]));
+    std::string text = size_text(d);
+    text += fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
+    text += fmt::format("grains      {}{}\n", d["grains"].get<std::uint64_t>(),
+                        d["mean_grain_diameter_mm"].is_null()
+                            ? std::string()
+                            : fmt::format(", {:.3g} mm across on average", number(d["mean_grain_diameter_mm"])));
     text += fmt::format("sites       {} ({} hidden)\n", d["sites"].get<std::uint64_t>(), d["hidden_sites"].get<std::uint64_t>());
+    text += tessellation_text(d["tessellation"]);
     text += fmt::format("spheres     {:.4g} nm across, index {:.5g} in {:.5g}: effective index {:.5g}\n",
                         number(c["sphere_diameter_nm"]), number(c["n_sphere"]), number(c["n_medium"]), number(c["n_eff"]));
-    text += fmt::format("color       {:.1f} nm from (111) planes at normal incidence; coherence length {:.4g} um\n",
+    text += fmt::format("color       up to {:.1f} nm, from light straight onto (111) planes; coherence length {:.4g} um\n",
                         number(c["wavelength_111_normal_nm"]), number(c["coherence_length_um"]));
     text += fmt::format(
         "body        absorber {}, {:.4g} /mm at 550 nm; scattering {:.4g} /mm (Rayleigh, 400 nm) and {:.4g} /mm (Mie)\n",
         c["absorber"].get<std::string>(), number(c["sigma_a_550nm_per_mm"]), number(c["sigma_s_rayleigh_400nm_per_mm"]),
         number(c["sigma_s_mie_per_mm"]));
+    text += fields_text(d["fields"]);
+    text += fmt::format("disorder    stacking faults {:.4g} per layer, mosaic spread {:.4g} degrees\n",
+                        number(c["stacking_fault_probability"]), number(c["mosaic_spread_deg"]));
     const std::string version = d["program_version"].get<std::string>();
     text += d["schema_version"].get<int>() == 0 ? std::string("made by     another program\n")
                                                 : fmt::format("made by     opal {}, schema {}, seed {}\n", version,

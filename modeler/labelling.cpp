@@ -5,12 +5,14 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
+#include <optional>
 
 #include "formats/command.h"
 #include "modeler/block_tree.h"
+#include "modeler/boundary_noise.h"
 #include "modeler/level_set.h"
+#include "modeler/owner_search.h"
 #include "modeler/site_culling.h"
 
 namespace opal {
@@ -18,10 +20,6 @@ namespace {
 
 using LabelLeaf = openvdb::Int32Tree::LeafNodeType;
 using ShapeLeaf = openvdb::FloatTree::LeafNodeType;
-
-/// Owners are searched in cubes of this size.
-constexpr std::int32_t cell_size = 4;
-constexpr std::int32_t cell_voxels = cell_size * cell_size * cell_size;
 
 struct Tile {
     VoxelBlock block;
@@ -34,11 +32,13 @@ struct Findings {
     std::vector<std::unique_ptr<LabelLeaf>> leaves;
 };
 
+template <typename Metric>
 class Labeller {
   public:
-    Labeller(const SiteCulling& culling, const std::vector<std::int32_t>& label_of_site, const openvdb::FloatTree& shape,
-             double voxel_size_mm)
-        : culling_(culling), label_of_site_(label_of_site), shape_(shape), voxel_size_mm_(voxel_size_mm) {}
+    /// `noise` may be null.
+    Labeller(const SiteCulling<Metric>& culling, const std::vector<std::int32_t>& label_of_site, const openvdb::FloatTree& shape,
+             double voxel_size_mm, const BoundaryNoise* noise)
+        : culling_(culling), label_of_site_(label_of_site), shape_(shape), voxel_size_mm_(voxel_size_mm), noise_(noise) {}
 
     void visit(const VoxelBlock& block, const Candidates& parent_candidates) {
         const BlockSide side = block_side(shape_, block.origin, block.size);
@@ -67,7 +67,12 @@ class Labeller {
 
   private:
     void shrink(const VoxelBlock& block, std::span<const std::int32_t> from, Candidates& kept) const {
-        culling_.shrink(from, block.centre_mm(voxel_size_mm_), block.half_diagonal_mm(voxel_size_mm_), kept);
+        const Ball ball{block.centre_mm(voxel_size_mm_), block.half_diagonal_mm(voxel_size_mm_)};
+        shrink(noise_ ? noise_->displaced(ball) : ball, from, kept);
+    }
+
+    void shrink(const Ball& ball, std::span<const std::int32_t> from, Candidates& kept) const {
+        culling_.shrink(from, ball.centre_mm, ball.radius_mm, kept);
     }
 
     std::int32_t label_of(std::int32_t site) const { return label_of_site_[static_cast<std::size_t>(site)]; }
@@ -80,13 +85,10 @@ class Labeller {
     void add_leaf(const VoxelBlock& block, BlockSide side, const Candidates& candidates) {
         auto leaf = std::make_unique<LabelLeaf>(block.origin, 0, false);
         std::int32_t* const labels = leaf->buffer().data();
-        Candidates cell_candidates;
-        for (int octant = 0; octant < 8; ++octant) {
-            const VoxelBlock cell = block.child(octant);
-            cell_candidates.clear();
-            shrink(cell, candidates, cell_candidates);
-            label_cell(cell, cell_candidates, labels);
-        }
+        if (noise_)
+            label_displaced(block, candidates, labels);
+        else
+            label_straight(block, candidates, labels);
         if (side == BlockSide::inside) {
             const std::int32_t first = labels[0];
             if (std::all_of(labels, labels + LabelLeaf::SIZE, [first](std::int32_t label) { return label == first; })) {
@@ -110,48 +112,62 @@ class Labeller {
         }
     }
 
-    /// Writes the labels of a cube of `cell_size` voxels into its leaf's buffer.
-    void label_cell(const VoxelBlock& cell, const Candidates& candidates, std::int32_t* leaf_labels) const {
+    void label_straight(const VoxelBlock& leaf, const Candidates& candidates, std::int32_t* leaf_labels) const {
+        Candidates kept;
+        for (int octant = 0; octant < 8; ++octant) {
+            const VoxelBlock cell = leaf.child(octant);
+            kept.clear();
+            shrink(cell, candidates, kept);
+            label_cell(cell, kept, leaf_labels, [&](auto& search, const Site& site, std::int32_t number) {
+                search.offer(site, number, cell, voxel_size_mm_);
+            });
+        }
+    }
+
+    /// The displaced centres are known here, so the balls around them are as small as can be.
+    void label_displaced(const VoxelBlock& leaf, const Candidates& candidates, std::int32_t* leaf_labels) const {
+        std::vector<openvdb::Vec3d> places_mm;
+        for (int octant = 0; octant < 8; ++octant)
+            for (const openvdb::Coord& voxel : leaf.child(octant).box()) places_mm.push_back(voxel.asVec3d() * voxel_size_mm_);
+        noise_->displace(places_mm);
+
+        Candidates kept;
+        for (int octant = 0; octant < 8; ++octant) {
+            const std::span<const openvdb::Vec3d> of_cell(&places_mm[static_cast<std::size_t>(octant * cell_voxels)],
+                                                          cell_voxels);
+            kept.clear();
+            shrink(ball_around(of_cell), candidates, kept);
+            const CellPoints points(of_cell);
+            label_cell(leaf.child(octant), kept, leaf_labels,
+                       [&](auto& search, const Site& site, std::int32_t number) { search.offer(site, number, points); });
+        }
+    }
+
+    static Ball ball_around(std::span<const openvdb::Vec3d> points_mm) {
+        openvdb::BBoxd box;
+        for (const openvdb::Vec3d& point_mm : points_mm) box.expand(point_mm);
+        Ball ball{box.getCenter(), 0.0};
+        for (const openvdb::Vec3d& point_mm : points_mm)
+            ball.radius_mm = std::max(ball.radius_mm, (point_mm - ball.centre_mm).length());
+        return ball;
+    }
+
+    /// Writes the labels of a cell's voxels into its leaf's buffer. `offer` shows a site to the search.
+    template <typename Offer>
+    void label_cell(const VoxelBlock& cell, const Candidates& candidates, std::int32_t* leaf_labels, const Offer& offer) const {
         std::int32_t labels[cell_voxels];
-        if (share_label(candidates))
+        if (share_label(candidates)) {
             std::fill(labels, labels + cell_voxels, label_of(candidates.front()));
-        else
-            search_owners(cell, candidates, labels);
+        } else {
+            OwnerSearch<Metric> search;
+            for (std::size_t n = 0; n < candidates.size(); ++n)
+                offer(search, culling_.sites()[static_cast<std::size_t>(candidates[n])], static_cast<std::int32_t>(n));
+            for (std::int32_t voxel = 0; voxel < cell_voxels; ++voxel) labels[voxel] = label_of(candidates[search.owner(voxel)]);
+        }
         const std::int32_t* next = labels;
         for (std::int32_t i = 0; i < cell_size; ++i)
             for (std::int32_t j = 0; j < cell_size; ++j, next += cell_size)
                 std::copy(next, next + cell_size, leaf_labels + LabelLeaf::coordToOffset(cell.origin.offsetBy(i, j, 0)));
-    }
-
-    /// The owner of each voxel. Loops run candidate by candidate over fixed arrays, which compilers turn into vector code; the
-    /// formula is weighted_distance_mm's, operation by operation.
-    void search_owners(const VoxelBlock& cell, const Candidates& candidates, std::int32_t (&labels)[cell_voxels]) const {
-        double smallest_mm[cell_voxels];
-        std::fill(std::begin(smallest_mm), std::end(smallest_mm), std::numeric_limits<double>::infinity());
-        double owner[cell_voxels] = {};  // candidate number, as a double so that comparison and choice have equal widths
-        for (std::size_t n = 0; n < candidates.size(); ++n) {
-            const Site& site = culling_.sites()[static_cast<std::size_t>(candidates[n])];
-            double squared_mm2[3][cell_size];
-            for (int axis = 0; axis < 3; ++axis)
-                for (std::int32_t i = 0; i < cell_size; ++i) {
-                    const double offset_mm = (cell.origin[axis] + i) * voxel_size_mm_ - site.position_mm[axis];
-                    squared_mm2[axis][i] = offset_mm * offset_mm;
-                }
-            const double weight_mm = static_cast<double>(site.weight_mm);
-            const double number = static_cast<double>(n);
-            for (std::int32_t row = 0; row < cell_size * cell_size; ++row) {
-                const double in_plane_mm2 = squared_mm2[0][row / cell_size] + squared_mm2[1][row % cell_size];
-                for (std::int32_t k = 0; k < cell_size; ++k) {
-                    const std::int32_t voxel = row * cell_size + k;
-                    const double delta_mm = std::sqrt(in_plane_mm2 + squared_mm2[2][k]) - weight_mm;
-                    const bool nearer = delta_mm < smallest_mm[voxel];
-                    smallest_mm[voxel] = nearer ? delta_mm : smallest_mm[voxel];
-                    owner[voxel] = nearer ? number : owner[voxel];
-                }
-            }
-        }
-        for (std::int32_t voxel = 0; voxel < cell_voxels; ++voxel)
-            labels[voxel] = label_of(candidates[static_cast<std::size_t>(owner[voxel])]);
     }
 
     static void add_tile(openvdb::Int32Tree& tree, const Tile& tile) {
@@ -165,17 +181,18 @@ class Labeller {
                     tree.addTile(1, tile.block.origin.offsetBy(i, j, k), tile.label, true);
     }
 
-    const SiteCulling& culling_;
+    const SiteCulling<Metric>& culling_;
     const std::vector<std::int32_t>& label_of_site_;
     const openvdb::FloatTree& shape_;
     double voxel_size_mm_;
+    const BoundaryNoise* noise_;
     tbb::enumerable_thread_specific<Findings> findings_;
 };
 
 }  // namespace
 
 openvdb::Int32Grid::Ptr label_voxels(const std::vector<Site>& sites, const std::vector<std::int32_t>& label_of_site,
-                                     const openvdb::FloatGrid& shape_level_set) {
+                                     const openvdb::FloatGrid& shape_level_set, const Tessellation& tessellation) {
     const double voxel_size_mm = shape_level_set.voxelSize().x();
     Candidates taking_part;
     for (std::size_t i = 0; i < sites.size(); ++i)
@@ -185,13 +202,21 @@ openvdb::Int32Grid::Ptr label_voxels(const std::vector<Site>& sites, const std::
     openvdb::Int32Grid::Ptr grid = openvdb::Int32Grid::create(0);
     if (!taking_part.empty() && shape_level_set.tree().evalLeafBoundingBox(voxels)) {
         const VoxelBlock root = covering_block(voxels);
-        const openvdb::BBoxd bounds_mm(root.origin.asVec3d() * voxel_size_mm,
-                                       root.origin.offsetBy(root.size).asVec3d() * voxel_size_mm);
-        const SiteCulling culling(sites, bounds_mm);
-        Labeller labeller(culling, label_of_site, shape_level_set.tree(), voxel_size_mm);
-        labeller.visit(root, taking_part);
-        throw_if_interrupted();
-        grid = labeller.finish();
+        openvdb::BBoxd bounds_mm(root.origin.asVec3d() * voxel_size_mm,
+                                 root.origin.offsetBy(root.size).asVec3d() * voxel_size_mm);
+        std::optional<BoundaryNoise> noise;
+        if (tessellation.boundary_noise.amplitude_mm > 0.0) {
+            noise.emplace(tessellation.boundary_noise, tessellation.seed, bounds_mm);
+            bounds_mm.expand(tessellation.boundary_noise.amplitude_mm);
+        }
+        with_metric(tessellation.kind, [&](auto metric) {
+            const SiteCulling<decltype(metric)> culling(sites, bounds_mm);
+            Labeller<decltype(metric)> labeller(culling, label_of_site, shape_level_set.tree(), voxel_size_mm,
+                                                noise ? &*noise : nullptr);
+            labeller.visit(root, taking_part);
+            throw_if_interrupted();
+            grid = labeller.finish();
+        });
     }
     grid->setTransform(shape_level_set.transform().copy());
     grid->setName(grid_names::grain_id);

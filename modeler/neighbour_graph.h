@@ -35,8 +35,14 @@ inline constexpr double smallest_face_search = 1.0 / 128.0;
 NeighbourGraph apollonius_graph(const std::vector<Site>& sites, const std::vector<char>& hidden, const Shape& shape,
                                 double spacing_mm);
 
-/// Edges of the Delaunay tetrahedrization of the sites, weights and shape disregarded (CGAL, exact predicates). Includes the long
-/// edges along the sites' convex hull.
+/// Edges of the Delaunay tetrahedrization of the visible sites, weights and shape disregarded (CGAL, exact predicates). Includes
+/// the long edges along the sites' convex hull. Sites on a line or in a plane are joined as their Delaunay triangulation there
+/// joins them; sites at the very same place are neighbours, and the lowest of them has the others' further neighbours. Where five
+/// or more sites lie on one empty sphere, CGAL's symbolic perturbation chooses; that depends on the positions alone.
 NeighbourGraph delaunay_graph(const std::vector<Site>& sites, const std::vector<char>& hidden);
+
+/// Neighbours on a lattice: visible sites whose cells, one per site and no two alike, differ by one step along one axis; up to
+/// six per site.
+NeighbourGraph lattice_graph(const std::vector<openvdb::Coord>& cells, const std::vector<char>& hidden);
 
 }  // namespace opal

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "modeler/point_grid.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -52,25 +49,6 @@ std::uint64_t PointGrid::key_of(const Cell& cell) {
     std::uint64_t key = 0;
     for (const std::int64_t index : cell.index) key = (key << key_bits) | static_cast<std::uint64_t>(index + 1);
     return key;
-}
-
-double shortest_distance(const std::vector<openvdb::Vec3d>& points, double typical) {
-    if (points.size() < 2) return 0.0;
-    const PointGrid grid(points, typical);
-    const double none = std::numeric_limits<double>::infinity();
-    for (double radius = typical;; radius *= 2.0) {
-        const double squared = tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, points.size()), none,
-            [&](const tbb::blocked_range<std::size_t>& range, double smallest) {
-                for (std::size_t n = range.begin(); n != range.end(); ++n)
-                    grid.for_each_within(points[n], radius, [&](std::size_t other, double squared_distance) {
-                        if (other != n) smallest = std::min(smallest, squared_distance);
-                    });
-                return smallest;
-            },
-            [](double a, double b) { return std::min(a, b); });
-        if (squared < none) return std::sqrt(squared);
-    }
 }
 
 }  // namespace opal

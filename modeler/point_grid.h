@@ -76,7 +76,4 @@ class PointGrid {
     std::vector<Entry> entries_;
 };
 
-/// The shortest distance between any two of the points; 0 for fewer than two. `typical` is a first guess at it.
-double shortest_distance(const std::vector<openvdb::Vec3d>& points, double typical);
-
 }  // namespace opal

@@ -4,76 +4,55 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "formats/error.h"
-#include "formats/random.h"
-#include "modeler/union_find.h"
+#include "formats/units.h"
+#include "modeler/bond_order.h"
 
 namespace opal {
 namespace {
 
-struct Bond {
-    double random;
-    NeighbourPair pair;
-
-    auto operator<=>(const Bond&) const = default;
-};
-
-/// All bonds, the first to be kept first.
-std::vector<Bond> bonds_in_order(const NeighbourGraph& graph, std::uint64_t seed) {
-    std::vector<Bond> bonds;
-    bonds.reserve(graph.size());
-    for (const NeighbourPair& pair : graph) {
-        const std::uint64_t index =
-            (static_cast<std::uint64_t>(pair.first) << 32) | static_cast<std::uint64_t>(static_cast<std::uint32_t>(pair.second));
-        const RandomBlock block = random_block(seed, RandomStream::sintering_bonds, index, 0);
-        bonds.push_back({uniform_double(block.value[0], block.value[1]), pair});
-    }
-    std::sort(bonds.begin(), bonds.end());
-    return bonds;
-}
-
 struct Sweep {
-    std::size_t fewest_grains = 0;                ///< with all bonds kept
-    std::optional<std::size_t> bonds_for_target;  ///< how many bonds leave exactly the target
+    std::size_t num_visible = 0;
+    std::size_t fewest_grains = 0;               ///< with all bonds kept
+    std::optional<std::size_t> kept_for_target;  ///< how many bonds leave exactly the target
     std::optional<double> threshold;
 };
 
-/// Adds bond after bond, following the number of grains and the mean size of all but the largest.
-Sweep sweep_bonds(const std::vector<Bond>& bonds, std::size_t num_sites, std::size_t num_visible, std::size_t target) {
-    UnionFind clusters(num_sites);
+Sweep sweep_to_target(const BondOrder& bonds, const std::vector<char>& hidden, std::size_t target) {
     Sweep sweep;
-    sweep.fewest_grains = num_visible;
-    if (target == num_visible) sweep.bonds_for_target = 0;
-    double sum_of_squares = static_cast<double>(num_visible);
-    double highest_mean = 0.0;
-    std::size_t largest = 1;
-    for (std::size_t n = 0; n < bonds.size(); ++n) {
-        const std::size_t a = clusters.root(static_cast<std::size_t>(bonds[n].pair.first));
-        const std::size_t b = clusters.root(static_cast<std::size_t>(bonds[n].pair.second));
-        if (a == b) continue;
-        sum_of_squares += 2.0 * static_cast<double>(clusters.size_at(a)) * static_cast<double>(clusters.size_at(b));
-        largest = std::max(largest, clusters.join(a, b));
-        if (--sweep.fewest_grains == target) sweep.bonds_for_target = n + 1;
-        const double mean_of_others = sum_of_squares - static_cast<double>(largest) * static_cast<double>(largest);
-        if (mean_of_others > highest_mean) {
-            highest_mean = mean_of_others;
-            sweep.threshold = static_cast<double>(n + 1) / static_cast<double>(bonds.size());
-        }
-    }
+    sweep.num_visible = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), char(0)));
+    ThresholdFinder finder;
+    sweep_bonds(bonds, hidden.size(), sweep.num_visible, [&](const BondSweepState& state) {
+        finder.visit(state, sweep.num_visible);
+        if (state.num_grains == target && !sweep.kept_for_target) sweep.kept_for_target = state.num_kept;
+        sweep.fewest_grains = state.num_grains;
+    });
+    sweep.threshold = finder.threshold(bonds);
     return sweep;
 }
 
-std::size_t count_kept(const std::vector<Bond>& bonds, const SinteringRecipe& recipe, const Sweep& sweep,
-                       std::size_t num_visible) {
-    if (recipe.target_grains > 0) {
-        if (sweep.bonds_for_target) return *sweep.bonds_for_target;
-        throw InputError(fmt::format("grains.sintering.grains = {} cannot be reached: these {} sites can form {} to {} grains",
-                                     recipe.target_grains, num_visible, sweep.fewest_grains, num_visible));
-    }
-    const auto end =
-        std::partition_point(bonds.begin(), bonds.end(), [&](const Bond& bond) { return bond.random < recipe.probability; });
-    return static_cast<std::size_t>(end - bonds.begin());
+double mean_ball_diameter_mm(double volume_mm3, std::size_t num_grains) {
+    return std::cbrt(6.0 * volume_mm3 / (units::pi * static_cast<double>(std::max<std::size_t>(1, num_grains))));
+}
+
+/// The number of grains that the recipe wants; 0 where it gives a probability instead. Beyond what an integer holds: SIZE_MAX.
+std::size_t target_grains(const SinteringRecipe& recipe, double volume_mm3) {
+    if (recipe.target_grains > 0 || recipe.mean_grain_mm <= 0.0) return static_cast<std::size_t>(recipe.target_grains);
+    const double diameter_mm = recipe.mean_grain_mm;
+    const double grains = std::round(volume_mm3 / (units::pi / 6.0 * diameter_mm * diameter_mm * diameter_mm));
+    return grains < 1.0e15 ? std::max<std::size_t>(1, static_cast<std::size_t>(grains)) : SIZE_MAX;
+}
+
+[[noreturn]] void throw_unreachable(const SinteringRecipe& recipe, const Sweep& sweep, double volume_mm3) {
+    const std::string possible =
+        fmt::format("these {} sites can form {} to {} grains", sweep.num_visible, sweep.fewest_grains, sweep.num_visible);
+    if (recipe.target_grains > 0)
+        throw InputError(fmt::format("grains.sintering.grains = {} cannot be reached: {}", recipe.target_grains, possible));
+    throw InputError(fmt::format("grains.sintering.mean_grain_mm = {:.4g} cannot be reached: {}, {:.4g} to {:.4g} mm across",
+                                 recipe.mean_grain_mm, possible, mean_ball_diameter_mm(volume_mm3, sweep.num_visible),
+                                 mean_ball_diameter_mm(volume_mm3, sweep.fewest_grains)));
 }
 
 void number_grains(UnionFind& clusters, const std::vector<char>& hidden, Sintering& result) {
@@ -89,26 +68,26 @@ void number_grains(UnionFind& clusters, const std::vector<char>& hidden, Sinteri
 
 }  // namespace
 
-Sintering sinter(const NeighbourGraph& graph, const std::vector<char>& hidden, const SinteringRecipe& recipe,
-                 std::uint64_t seed) {
-    const auto num_visible = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), char(0)));
-    const std::vector<Bond> bonds = bonds_in_order(graph, seed);
-    const Sweep sweep = sweep_bonds(bonds, hidden.size(), num_visible, static_cast<std::size_t>(recipe.target_grains));
+Sintering sinter(const NeighbourGraph& graph, const std::vector<char>& hidden, const SinteringRecipe& recipe, std::uint64_t seed,
+                 const std::vector<double>& bond_weights, double sites_volume_mm3) {
+    const BondOrder bonds(graph, bond_weights, seed);
+    const std::size_t target = target_grains(recipe, sites_volume_mm3);
+    const Sweep sweep = sweep_to_target(bonds, hidden, target);
+    if (target > 0 && !sweep.kept_for_target) throw_unreachable(recipe, sweep, sites_volume_mm3);
 
     Sintering result;
     result.threshold = sweep.threshold;
-    result.num_kept_bonds = count_kept(bonds, recipe, sweep, num_visible);
-    result.probability = recipe.target_grains == 0 ? recipe.probability
-                         : bonds.empty()           ? 0.0
-                                         : static_cast<double>(result.num_kept_bonds) / static_cast<double>(bonds.size());
+    result.num_kept_bonds = target > 0 ? *sweep.kept_for_target : bonds.num_kept(recipe.probability);
+    result.probability = target > 0 ? bonds.probability(result.num_kept_bonds) : recipe.probability;
     UnionFind clusters(hidden.size());
-    std::size_t largest = num_visible > 0 ? 1 : 0;
+    std::size_t largest = sweep.num_visible > 0 ? 1 : 0;
     for (std::size_t n = 0; n < result.num_kept_bonds; ++n) {
-        const std::size_t a = clusters.root(static_cast<std::size_t>(bonds[n].pair.first));
-        const std::size_t b = clusters.root(static_cast<std::size_t>(bonds[n].pair.second));
+        const std::size_t a = clusters.root(static_cast<std::size_t>(bonds[n].first));
+        const std::size_t b = clusters.root(static_cast<std::size_t>(bonds[n].second));
         if (a != b) largest = std::max(largest, clusters.join(a, b));
     }
-    result.largest_grain_fraction = static_cast<double>(largest) / static_cast<double>(std::max<std::size_t>(1, num_visible));
+    result.largest_grain_fraction =
+        static_cast<double>(largest) / static_cast<double>(std::max<std::size_t>(1, sweep.num_visible));
     number_grains(clusters, hidden, result);
     return result;
 }

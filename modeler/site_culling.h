@@ -3,29 +3,22 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "formats/opal_asset.h"
+#include "modeler/tessellation_metric.h"
 
 namespace opal {
-
-/// Distance of the additively weighted diagram, delta_i(x) = |x - p_i| - w_i, in mm: x belongs to the site where it is smallest.
-/// This one formula, evaluated in this order, decides everywhere, so that equal inputs give equal labels to the last bit.
-inline double weighted_distance_mm(const openvdb::Vec3d& point_mm, const Site& site) {
-    const double dx = point_mm.x() - site.position_mm.x();
-    const double dy = point_mm.y() - site.position_mm.y();
-    const double dz = point_mm.z() - site.position_mm.z();
-    return std::sqrt(dx * dx + dy * dy + dz * dz) - static_cast<double>(site.weight_mm);
-}
 
 /// Sites that may own part of a region, by index, in ascending order.
 using Candidates = std::vector<std::int32_t>;
 
-/// Drops the candidates that cannot own a point of a ball. delta_i is 1-Lipschitz, so an owner of any point within R of the
-/// centre c satisfies delta_i(c) <= min_j delta_j(c) + 2 R; rounding is allowed for, so no owner is ever dropped.
+/// Drops the candidates that cannot own a point of a ball. delta_i is slope_i-Lipschitz, so an owner of any point within R of the
+/// centre c satisfies delta_i(c) - slope_i R <= min_j (delta_j(c) + slope_j R); rounding is allowed for, so no owner is ever
+/// dropped. `Metric` is a TessellationMetric.
+template <typename Metric>
 class SiteCulling {
   public:
     /// `bounds_mm` encloses every point that will be asked about.
@@ -40,5 +33,9 @@ class SiteCulling {
     const std::vector<Site>& sites_;
     double rounding_slack_mm_;
 };
+
+extern template class SiteCulling<TessellationMetric<TessellationKind::additive>>;
+extern template class SiteCulling<TessellationMetric<TessellationKind::multiplicative>>;
+extern template class SiteCulling<TessellationMetric<TessellationKind::manhattan>>;
 
 }  // namespace opal

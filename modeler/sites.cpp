@@ -10,7 +10,7 @@
 
 #include "formats/error.h"
 #include "modeler/lattice_sites.h"
-#include "modeler/point_grid.h"
+#include "modeler/sample_cells.h"
 #include "modeler/sample_elimination.h"
 #include "modeler/shape_sampler.h"
 #include "modeler/site_file.h"

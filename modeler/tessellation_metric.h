@@ -15,14 +15,27 @@ namespace opal {
 ///  - additive, voronoi: |x - p_i| - w_i, w_i in mm (0 for voronoi)
 ///  - multiplicative:    w_i |x - p_i|, w_i > 0 without unit
 ///  - manhattan:         |x - p_i|_1 - w_i, w_i in mm
-/// One formula, evaluated in one order, decides everywhere, so that equal inputs give equal labels to the last bit.
+/// One formula, evaluated in one order, decides everywhere, so that equal inputs give equal labels to the last bit:
+/// delta_of_terms_mm(axis_term(dx) + axis_term(dy) + axis_term(dz), weight), summed from the left.
 template <TessellationKind kind>
 struct TessellationMetric {
-    static double delta_mm(double dx, double dy, double dz, double weight) {
-        if constexpr (kind == TessellationKind::manhattan) return std::abs(dx) + std::abs(dy) + std::abs(dz) - weight;
-        const double distance_mm = std::sqrt(dx * dx + dy * dy + dz * dz);
+    /// Whether all sites have the same slope.
+    static constexpr bool uniform_slope = kind != TessellationKind::multiplicative;
+
+    static double axis_term(double offset_mm) {
+        if constexpr (kind == TessellationKind::manhattan) return std::abs(offset_mm);
+        return offset_mm * offset_mm;
+    }
+
+    static double delta_of_terms_mm(double sum_of_terms, double weight) {
+        if constexpr (kind == TessellationKind::manhattan) return sum_of_terms - weight;
+        const double distance_mm = std::sqrt(sum_of_terms);
         if constexpr (kind == TessellationKind::multiplicative) return weight * distance_mm;
         return distance_mm - weight;
+    }
+
+    static double delta_mm(double dx, double dy, double dz, double weight) {
+        return delta_of_terms_mm(axis_term(dx) + axis_term(dy) + axis_term(dz), weight);
     }
 
     static double delta_mm(const openvdb::Vec3d& point_mm, const Site& site) {
@@ -35,6 +48,16 @@ struct TessellationMetric {
         if constexpr (kind == TessellationKind::multiplicative) return static_cast<double>(site.weight_mm);
         if constexpr (kind == TessellationKind::manhattan) return std::sqrt(3.0);
         return 1.0;
+    }
+
+    /// Whether `other`, `offset_mm` away, is at least as near as `site` wherever `site` could own a point; where both own the
+    /// same, the one that comes `first` does.
+    static bool hides(const Site& other, const Site& site, const openvdb::Vec3d& offset_mm, bool first) {
+        const double lead = static_cast<double>(other.weight_mm) - static_cast<double>(site.weight_mm);
+        if constexpr (kind == TessellationKind::multiplicative)
+            return offset_mm == openvdb::Vec3d(0.0) && (lead < 0.0 || (lead == 0.0 && first));
+        const double distance_mm = delta_mm(offset_mm.x(), offset_mm.y(), offset_mm.z(), 0.0);
+        return lead > distance_mm || (lead == distance_mm && (distance_mm > 0.0 || first));
     }
 };
 

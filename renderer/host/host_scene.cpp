@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "formats/error.h"
+#include "formats/field_summary.h"
 #include "formats/opal_asset.h"
 #include "formats/units.h"
 #include "renderer/host/opal_surface.h"
@@ -36,6 +37,35 @@ int choose_pairs(const CrystalParameters& crystal, PlanePair* chosen, int& recip
     }
     std::copy(pairs.begin(), pairs.end(), chosen);
     return static_cast<int>(pairs.size());
+}
+
+/// The transport knows one value of each coefficient in the whole opal.
+struct MeanCoefficients {
+    double sigma_a_scale;
+    double sigma_s_rayleigh_400nm_per_mm;
+    double sigma_s_mie_per_mm;
+};
+
+MeanCoefficients mean_coefficients(const OpalAsset& asset, const std::string& file, std::vector<std::string>& notices) {
+    const auto mean = [&](const openvdb::FloatGrid::Ptr& field, const char* name, double constant) {
+        if (!field) return constant;
+        const FieldSummary summary = summarize_field(*field, asset.shape);
+        if (summary.min != summary.max)
+            notices.push_back(fmt::format("{}: {} varies; rendered with its mean {:.4g} so far", file, name, summary.mean));
+        return summary.mean;
+    };
+    return {mean(asset.sigma_a_scale, grid_names::sigma_a_scale, 1.0),
+            mean(asset.sigma_s_rayleigh_400nm, grid_names::sigma_s_rayleigh, asset.constants.sigma_s_rayleigh_400nm_per_mm),
+            mean(asset.sigma_s_mie, grid_names::sigma_s_mie, asset.constants.sigma_s_mie_per_mm)};
+}
+
+void notice_unused_disorder(const OpalConstants& constants, const std::string& file, std::vector<std::string>& notices) {
+    if (constants.stacking_fault_probability > 0.0)
+        notices.push_back(fmt::format("{}: stacking_fault_probability {:.4g} is not used by the renderer yet", file,
+                                      constants.stacking_fault_probability));
+    if (constants.mosaic_spread_deg > 0.0)
+        notices.push_back(
+            fmt::format("{}: mosaic_spread_deg {:.4g} is not used by the renderer yet", file, constants.mosaic_spread_deg));
 }
 
 }  // namespace
@@ -89,14 +119,20 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     options.orientation_seed = object.orientation_seed;
     std::vector<std::string> file_notices;
     const OpalAsset asset = read_opal_asset(object.file, options, file_notices);
-    for (const std::string& notice : file_notices) notices.push_back(object.file.string() + ": " + notice);
+    const std::string file = object.file.string();
+    for (const std::string& notice : file_notices) notices.push_back(file + ": " + notice);
+    if (!asset.grain_id)
+        throw InputError(file +
+                         ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
+    const MeanCoefficients means = mean_coefficients(asset, file, notices);
+    notice_unused_disorder(asset.constants, file, notices);
 
     OpalView& opal = view_.opal;
     opal.present = true;
     opal.diffraction = settings.diffraction == DiffractionModel::two_beam;
     opal.world_from_object = object_transform(object);
 
-    meshes_.push_back(surface_from_level_set(*asset.shape, object.file.string()));
+    meshes_.push_back(surface_from_level_set(*asset.shape, file));
     transform_mesh(meshes_.back(), opal.world_from_object);
 
     grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
@@ -111,10 +147,10 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     opal.num_pairs = choose_pairs(crystal, opal.pairs, reciprocal_points_, notices);
     opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
     for (int i = 0; i < spectrum_samples; ++i)
-        sigma_a_per_mm_.push_back(float(constants.sigma_a_per_mm.at(units::wavelength_min_nm + i)));
+        sigma_a_per_mm_.push_back(float(means.sigma_a_scale * constants.sigma_a_per_mm.at(units::wavelength_min_nm + i)));
     opal.sigma_a_per_mm = sigma_a_per_mm_.data();
-    opal.sigma_s_rayleigh_400nm_per_mm = float(constants.sigma_s_rayleigh_400nm_per_mm);
-    opal.sigma_s_mie_per_mm = float(constants.sigma_s_mie_per_mm);
+    opal.sigma_s_rayleigh_400nm_per_mm = float(means.sigma_s_rayleigh_400nm_per_mm);
+    opal.sigma_s_mie_per_mm = float(means.sigma_s_mie_per_mm);
     opal.mie_asymmetry = float(constants.mie_asymmetry);
 }
 

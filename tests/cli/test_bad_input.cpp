@@ -83,6 +83,9 @@ TEST_F(BadInput, ModelCommandLine) {
     expect_failure(opal_model + " build " + at("good.toml") + " -o " + at("no/such/folder/out.vdb"), 2, "does not exist");
     expect_failure(opal_model + " build " + at("good.toml") + " -o /proc/out.vdb", 2, "cannot be written");
     expect_failure(build("good.toml", "--colour red"), 2, "--colour");
+    expect_failure(build("good.toml", "--for " + at("no_scene.toml")), 2, "no_scene.toml: no such file");
+    expect_failure(build("good.toml", "--for " + at("good.toml")), 2, "good.toml:");
+    expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels 0"), 2, "--for-pixels");
     expect_failure(opal_model + " info " + at("good.toml"), 2, "not a complete .vdb file");
     expect_failure(opal_model + " check " + at("nothing.vdb"), 2, "no such file");
 }

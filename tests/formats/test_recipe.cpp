@@ -105,6 +105,9 @@ TEST(Recipe, KeysThatContradictEachOther) {
                        "r.toml:4:13: grains.num_sites: the sites come from a file");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { graph = \"lattice\" }\n"), "needs sites = { kind = \"jittered");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { grains = 5, mean_grain_mm = 1 }\n"), "give one of probability");
+    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { preference = \"misorientation\" }\n"
+                                       "orientation = { kind = \"table\", file = \"q.csv\" }\n"),
+                       "a table orients finished grains");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nweight = []\n"), "a sum needs at least one term");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nweight = { kind = \"csv\" }\n"), "a weight of kind csv needs a file");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nweight = { kind = \"linear\", direction = [0, 0, 0] }\n"), "points nowhere");

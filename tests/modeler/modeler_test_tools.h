@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <fstream>
@@ -35,9 +36,10 @@ inline std::vector<Site> random_sites(const openvdb::BBoxd& box, std::size_t cou
     return sites;
 }
 
-/// Runs `work` with so many threads.
+/// Runs `work` with so many threads, even where the machine has fewer.
 template <typename Work>
 auto with_threads(int threads, const Work& work) {
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     return arena.execute(work);
 }

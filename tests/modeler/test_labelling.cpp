@@ -1,61 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "modeler/labelling.h"
 
-#include <limits>
-#include <numeric>
+#include <cmath>
 
-#include "modeler/shape.h"
-#include "modeler/site_culling.h"
-#include "modeler_test_tools.h"
+#include "labelling_test_tools.h"
 
 namespace opal {
 namespace {
 
+using testing_tools::expect_searched_labels;
+using testing_tools::one_label_each;
 using testing_tools::random_sites;
-
-std::unique_ptr<Shape> shape_of(ShapeKind kind, std::array<double, 3> size_mm) {
-    ShapeRecipe recipe;
-    recipe.kind = kind;
-    recipe.size_mm = size_mm;
-    recipe.girdle_mm = 0.2 * size_mm[2];
-    return make_shape(recipe);
-}
-
-std::vector<std::int32_t> one_label_each(const std::vector<Site>& sites) {
-    std::vector<std::int32_t> labels(sites.size());
-    std::iota(labels.begin(), labels.end(), 1);
-    return labels;
-}
-
-/// The site that a search through all of them finds, lowest index first.
-std::int32_t searched_owner(const openvdb::Vec3d& x, const std::vector<Site>& sites, const std::vector<std::int32_t>& labels) {
-    double smallest = std::numeric_limits<double>::infinity();
-    std::int32_t owner = 0;
-    for (std::size_t n = 0; n < sites.size(); ++n) {
-        const double delta = weighted_distance_mm(x, sites[n]);
-        if (labels[n] != 0 && delta < smallest) smallest = delta, owner = labels[n];
-    }
-    return owner;
-}
-
-void expect_searched_labels(const openvdb::Int32Grid& grid, const openvdb::FloatGrid& shape, const std::vector<Site>& sites,
-                            const std::vector<std::int32_t>& labels) {
-    openvdb::CoordBBox box;
-    ASSERT_TRUE(shape.tree().evalLeafBoundingBox(box));
-    const double h = shape.voxelSize().x();
-    auto distances = shape.getConstAccessor();
-    auto values = grid.getConstAccessor();
-    std::uint64_t inside = 0;
-    for (const openvdb::Coord& voxel : box) {
-        const bool is_inside = distances.getValue(voxel) < 0.0f;
-        inside += is_inside ? 1 : 0;
-        ASSERT_EQ(values.isValueOn(voxel), is_inside) << voxel;
-        ASSERT_EQ(values.getValue(voxel), is_inside ? searched_owner(voxel.asVec3d() * h, sites, labels) : 0) << voxel;
-    }
-    EXPECT_EQ(grid.activeVoxelCount(), inside);
-    EXPECT_EQ(grid.background(), 0);
-    EXPECT_GE(grid.tree().leafCount(), 1u);
-}
+using testing_tools::shape_of;
 
 struct LabellingCase {
     const char* name;
@@ -64,6 +20,7 @@ struct LabellingCase {
     double voxel_size_mm;
     std::size_t sites;
     double weight_spread_mm;
+    Tessellation tessellation = {};
 };
 
 void PrintTo(const LabellingCase& which, std::ostream* stream) {
@@ -75,23 +32,53 @@ class Labelling : public ::testing::TestWithParam<LabellingCase> {};
 TEST_P(Labelling, EqualsASearchThroughAllSites) {
     const LabellingCase& which = GetParam();
     const auto shape = shape_of(which.kind, which.size_mm);
-    const std::vector<Site> sites = random_sites(shape->bounds_mm(), which.sites, which.weight_spread_mm, 11);
+    std::vector<Site> sites = random_sites(shape->bounds_mm(), which.sites, which.weight_spread_mm, 11);
+    if (which.tessellation.kind == TessellationKind::multiplicative)
+        for (Site& site : sites) site.weight_mm = std::exp(site.weight_mm);
     const auto level_set = shape->level_set(which.voxel_size_mm);
     const std::vector<std::int32_t> labels = one_label_each(sites);
-    expect_searched_labels(*label_voxels(sites, labels, *level_set), *level_set, sites, labels);
+    const auto grid = testing_tools::with_threads(1, [&] { return label_voxels(sites, labels, *level_set, which.tessellation); });
+    expect_searched_labels(*grid, *level_set, sites, labels, which.tessellation);
+    for (const int threads : {2, 7})
+        EXPECT_TRUE(testing_tools::same_grids(*grid, *testing_tools::with_threads(threads, [&] {
+            return label_voxels(sites, labels, *level_set, which.tessellation);
+        })));
 }
+
+constexpr auto additive = TessellationKind::additive;
+constexpr auto multiplicative = TessellationKind::multiplicative;
+constexpr auto manhattan = TessellationKind::manhattan;
+constexpr BoundaryNoiseRecipe rough = {0.08, 0.7, 2};
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, Labelling,
-    ::testing::Values(LabellingCase{"dense, no tiles", ShapeKind::ellipsoid, {4.0, 3.0, 2.0}, 0.08, 3000, 0.05},
-                      LabellingCase{"voronoi", ShapeKind::cabochon, {6.0, 5.0, 3.0}, 0.06, 60, 0.0},
-                      LabellingCase{"weighted, with tiles", ShapeKind::ellipsoid, {6.0, 6.0, 4.0}, 0.05, 12, 0.4},
-                      LabellingCase{"nearly equal weights", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 100, 1.0e-7},
-                      LabellingCase{"most sites hidden", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 200, 3.0},
-                      LabellingCase{"one site", ShapeKind::sphere, {5.0, 5.0, 5.0}, 0.1, 1, 0.0},
-                      LabellingCase{"one voxel thin", ShapeKind::box, {8.0, 8.0, 0.06}, 0.05, 20, 0.2},
-                      LabellingCase{
-                          "far smaller than its voxels' blocks", ShapeKind::sphere, {0.01, 0.01, 0.01}, 0.002, 5, 0.001}));
+    ::testing::Values(
+        LabellingCase{"dense, no tiles", ShapeKind::ellipsoid, {4.0, 3.0, 2.0}, 0.08, 3000, 0.05},
+        LabellingCase{"voronoi", ShapeKind::cabochon, {6.0, 5.0, 3.0}, 0.06, 60, 0.0},
+        LabellingCase{"weighted, with tiles", ShapeKind::ellipsoid, {6.0, 6.0, 4.0}, 0.05, 12, 0.4},
+        LabellingCase{"nearly equal weights", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 100, 1.0e-7},
+        LabellingCase{"most sites hidden", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 200, 3.0},
+        LabellingCase{"one site", ShapeKind::sphere, {5.0, 5.0, 5.0}, 0.1, 1, 0.0},
+        LabellingCase{"one voxel thin", ShapeKind::box, {8.0, 8.0, 0.06}, 0.05, 20, 0.2},
+        LabellingCase{"factors", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 150, 0.5, {multiplicative, {}, 0}},
+        LabellingCase{"factors from e^-8 to e^8", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 150, 8.0, {multiplicative, {}, 0}},
+        LabellingCase{"equal factors", ShapeKind::box, {5.0, 4.0, 3.0}, 0.08, 80, 0.0, {multiplicative, {}, 0}},
+        LabellingCase{"Manhattan", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.06, 150, 0.3, {manhattan, {}, 0}},
+        LabellingCase{"Manhattan, most sites hidden", ShapeKind::cabochon, {5.0, 4.0, 3.0}, 0.08, 150, 4.0, {manhattan, {}, 0}},
+        LabellingCase{"boundary noise", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.05, 60, 0.2, {additive, rough, 3}},
+        LabellingCase{"boundary noise finer than a voxel",
+                      ShapeKind::ellipsoid,
+                      {5.0, 4.0, 3.0},
+                      0.08,
+                      60,
+                      0.2,
+                      {additive, {0.3, 0.01, 3}, 3}},
+        LabellingCase{
+            "boundary noise wider than cells", ShapeKind::box, {5.0, 4.0, 3.0}, 0.08, 300, 0.1, {additive, {2.0, 0.5, 2}, 3}},
+        LabellingCase{
+            "boundary noise of factors", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.08, 60, 0.6, {multiplicative, rough, 3}},
+        LabellingCase{"boundary noise, Manhattan", ShapeKind::ellipsoid, {5.0, 4.0, 3.0}, 0.08, 60, 0.2, {manhattan, rough, 3}},
+        LabellingCase{"far smaller than its voxels' blocks", ShapeKind::sphere, {0.01, 0.01, 0.01}, 0.002, 5, 0.001}));
 
 TEST(Labelling, WholeNodesAndLeavesBecomeTilesButOneLeafStays) {
     const auto shape = shape_of(ShapeKind::box, {28.0, 28.0, 28.0});
@@ -151,13 +138,27 @@ TEST(Labelling, SitesWithoutALabelTakeNoPart) {
     expect_searched_labels(*label_voxels(sites, labels, *level_set), *level_set, sites, labels);
 }
 
-TEST(Labelling, DoesNotDependOnThreads) {
-    const auto shape = shape_of(ShapeKind::ellipsoid, {6.0, 5.0, 4.0});
-    const auto level_set = shape->level_set(0.03);
-    const std::vector<Site> sites = random_sites(shape->bounds_mm(), 500, 0.2, 3);
-    const auto one = testing_tools::with_threads(1, [&] { return label_voxels(sites, one_label_each(sites), *level_set); });
-    const auto two = testing_tools::with_threads(2, [&] { return label_voxels(sites, one_label_each(sites), *level_set); });
-    EXPECT_TRUE(testing_tools::same_grids(*one, *two));
+TEST(Labelling, CountsMoreVoxelsThan32BitsHold) {
+    // 2048 x 2048 x 1024 voxels inside, given as tiles; leaves at two corners say where the band ends.
+    openvdb::FloatGrid shape(0.3f);
+    shape.setTransform(openvdb::math::Transform::createLinearTransform(0.01));
+    shape.tree().fill(openvdb::CoordBBox({0, 0, 0}, {2047, 2047, 1023}), -0.3f, false);
+    for (const openvdb::Coord& corner : {openvdb::Coord(-8, -8, -8), openvdb::Coord(2048, 2048, 1024)})
+        shape.tree().setValueOn(corner, 0.3f);
+    std::vector<Site> sites = random_sites({openvdb::Vec3d(0.0), openvdb::Vec3d(20.0)}, 20, 0.5, 3);
+    const auto one_grain = label_voxels(sites, std::vector<std::int32_t>(sites.size(), 7), shape);
+    EXPECT_EQ(one_grain->activeVoxelCount(), std::uint64_t(1) << 32);
+    EXPECT_EQ(one_grain->tree().leafCount(), 1u);
+
+    // Two grains meet in the middle: x = 10.235 mm lies between voxels 1023 and 1024.
+    sites.resize(2);
+    for (Site& site : sites) site.weight_mm = 0.0f;
+    sites[0].position_mm = {5.235, 10.0, 5.0};
+    sites[1].position_mm = {15.235, 10.0, 5.0};
+    const auto two_grains = label_voxels(sites, {1, 2}, shape);
+    EXPECT_EQ(two_grains->activeVoxelCount(), std::uint64_t(1) << 32);
+    EXPECT_EQ(two_grains->tree().getValue({1023, 5, 900}), 1);
+    EXPECT_EQ(two_grains->tree().getValue({1024, 5, 900}), 2);
 }
 
 }  // namespace

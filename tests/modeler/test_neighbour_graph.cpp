@@ -113,7 +113,7 @@ TEST(ApolloniusGraph, WithoutWeightsIsDelaunaysInTheInterior) {
     const SiteSet set = sample_sites(*shape, 2000, 5);
     GrainsRecipe recipe;
     recipe.weight[0].kind = WeightKind::none;
-    const std::vector<Site> sites = weigh_sites(set, recipe);
+    const std::vector<Site> sites = weigh_sites(set, recipe, *shape).sites;
     const std::vector<char> hidden(sites.size(), 0);
     const NeighbourGraph apollonius = apollonius_graph(sites, hidden, *shape, set.spacing_mm());
     const NeighbourGraph delaunay = delaunay_graph(sites, hidden);
@@ -151,6 +151,83 @@ TEST(DelaunayGraph, OfFewSites) {
     EXPECT_EQ(delaunay_graph(sites, {0, 0, 0, 0, 1}).size(), 6u);
     EXPECT_EQ(delaunay_graph(sites, {0, 0, 1, 1, 1}), (NeighbourGraph{{0, 1}}));
     EXPECT_TRUE(delaunay_graph(sites, {0, 1, 1, 1, 1}).empty());
+}
+
+std::vector<Site> sites_at(const std::vector<openvdb::Vec3d>& positions_mm) {
+    std::vector<Site> sites;
+    for (const openvdb::Vec3d& position_mm : positions_mm) sites.push_back({position_mm, 0.0f, 0});
+    return sites;
+}
+
+NeighbourGraph delaunay_of(const std::vector<openvdb::Vec3d>& positions_mm) {
+    return delaunay_graph(sites_at(positions_mm), std::vector<char>(positions_mm.size(), 0));
+}
+
+TEST(DelaunayGraph, OfSitesOnALineAndInAPlane) {
+    EXPECT_TRUE(delaunay_of({}).empty());
+    EXPECT_TRUE(delaunay_of({{1, 2, 3}}).empty());
+    EXPECT_EQ(delaunay_of({{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}), (NeighbourGraph{{0, 2}, {1, 2}}));
+    EXPECT_EQ(delaunay_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), (NeighbourGraph{{0, 1}, {0, 2}, {1, 2}}));
+    // A kite: of its two diagonals the Delaunay triangulation takes the short one.
+    EXPECT_EQ(delaunay_of({{-3, 0, 1}, {0, 1, 1}, {3, 0, 1}, {0, -1, 1}}),
+              (NeighbourGraph{{0, 1}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
+    EXPECT_EQ(delaunay_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}).size(), 5u);  // a square, with either diagonal
+}
+
+TEST(DelaunayGraph, SitesAtTheSamePlaceAreNeighboursOfTheLowest) {
+    EXPECT_EQ(delaunay_of({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}), (NeighbourGraph{{0, 1}, {0, 2}}));
+    const std::vector<openvdb::Vec3d> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+    EXPECT_EQ(delaunay_of(corners), (NeighbourGraph{{0, 1}, {0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {2, 3}}));
+    EXPECT_EQ(delaunay_graph(sites_at(corners), {1, 0, 0, 0, 0}),
+              (NeighbourGraph{{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}));
+}
+
+TEST(DelaunayGraph, OfACosphericalLatticeDependsOnPlacesAlone) {
+    std::vector<openvdb::Vec3d> lattice;
+    for (int i = 0; i < 5; ++i)
+        for (int j = 0; j < 5; ++j)
+            for (int k = 0; k < 5; ++k) lattice.emplace_back(0.1 * i, 0.1 * j, 0.1 * k);
+    const NeighbourGraph graph = delaunay_of(lattice);
+    // Every edge of the lattice is there, and no edge is longer than the diagonal of a cell.
+    std::size_t lattice_edges = 0;
+    for (const NeighbourPair& pair : graph) {
+        const double length = (lattice[std::size_t(pair.first)] - lattice[std::size_t(pair.second)]).length();
+        EXPECT_LT(length, 0.1 * std::sqrt(3.0) + 1e-9);
+        lattice_edges += length < 0.1 + 1e-9 ? 1 : 0;
+    }
+    EXPECT_EQ(lattice_edges, 300u);
+    // The same places in another order: 37 is coprime to 125.
+    std::vector<openvdb::Vec3d> shuffled;
+    for (std::size_t n = 0; n < 125; ++n) shuffled.push_back(lattice[37 * n % 125]);
+    NeighbourGraph renumbered;
+    for (const NeighbourPair& pair : delaunay_of(shuffled)) {
+        const auto a = std::int32_t(37 * pair.first % 125), b = std::int32_t(37 * pair.second % 125);
+        renumbered.push_back({std::min(a, b), std::max(a, b)});
+    }
+    std::sort(renumbered.begin(), renumbered.end());
+    EXPECT_EQ(renumbered, graph);
+}
+
+TEST(LatticeGraph, JoinsCellsOneStepApart) {
+    // A row of three, one beside its middle, one across a corner, one two steps away.
+    const std::vector<openvdb::Coord> cells = {{1, 0, 0}, {0, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {3, 0, 0}};
+    EXPECT_EQ(lattice_graph(cells, {0, 0, 0, 0, 0, 0}), (NeighbourGraph{{0, 1}, {1, 2}, {1, 3}}));
+    EXPECT_EQ(lattice_graph(cells, {0, 1, 0, 0, 0, 0}), NeighbourGraph{});
+    EXPECT_TRUE(lattice_graph({}, {}).empty());
+}
+
+TEST(LatticeGraph, OfABlockHasThreeNSquaredNMinusOneBonds) {
+    std::vector<openvdb::Coord> cells;
+    for (int i = 0; i < 7; ++i)
+        for (int j = 0; j < 7; ++j)
+            for (int k = 0; k < 7; ++k) cells.emplace_back(k - 3, j - 3, i - 3);
+    const NeighbourGraph graph = lattice_graph(cells, std::vector<char>(343, 0));
+    EXPECT_EQ(graph.size(), 3u * 49u * 6u);
+    EXPECT_TRUE(std::is_sorted(graph.begin(), graph.end()));
+    for (const NeighbourPair& pair : graph) {
+        const openvdb::Coord step = cells[std::size_t(pair.second)] - cells[std::size_t(pair.first)];
+        EXPECT_EQ(std::abs(step.x()) + std::abs(step.y()) + std::abs(step.z()), 1);
+    }
 }
 
 }  // namespace

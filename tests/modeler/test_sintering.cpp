@@ -2,8 +2,11 @@
 #include "modeler/sintering.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "formats/random.h"
 #include "modeler/sites.h"
+#include "modeler/union_find.h"
 #include "modeler/weights.h"
 #include "modeler_test_tools.h"
 
@@ -69,6 +72,87 @@ TEST(Sintering, NamesTheRangeOfReachableNumbers) {
     }
 }
 
+TEST(Sintering, KeepsExactlyTheBondsWhoseRandomNumberLiesBelowP) {
+    const NeighbourGraph graph = cubic_lattice(9);
+    const std::vector<char> hidden(729, 0);
+    UnionFind clusters(729);
+    std::size_t kept = 0;
+    for (const NeighbourPair& pair : graph) {
+        const RandomBlock block =
+            random_block(5, RandomStream::sintering_bonds, (std::uint64_t(pair.first) << 32) | std::uint64_t(pair.second), 0);
+        if (!(uniform_double(block.value[0], block.value[1]) < 0.21)) continue;
+        ++kept;
+        const std::size_t a = clusters.root(std::size_t(pair.first)), b = clusters.root(std::size_t(pair.second));
+        if (a != b) clusters.join(a, b);
+    }
+    const Sintering result = sinter(graph, hidden, with_probability(0.21), 5);
+    EXPECT_EQ(result.num_kept_bonds, kept);
+    for (std::size_t a = 0; a < 729; ++a)
+        for (std::size_t b = 0; b < a; ++b)
+            ASSERT_EQ(result.grain_of_site[a] == result.grain_of_site[b], clusters.root(a) == clusters.root(b));
+}
+
+TEST(Sintering, MeanGrainSizeBecomesANumberOfGrains) {
+    const NeighbourGraph graph = cubic_lattice(10);
+    const std::vector<char> hidden(1000, 0);
+    SinteringRecipe recipe;
+    recipe.mean_grain_mm = 1.2;
+    // 500 mm^3 / (pi / 6 * 1.2^3 mm^3) = 552.6
+    EXPECT_EQ(sinter(graph, hidden, recipe, 1, {}, 500.0).num_grains, 553);
+    recipe.mean_grain_mm = 20.0;  // 0.1 grains: nothing is larger than the whole
+    EXPECT_EQ(sinter(graph, hidden, recipe, 1, {}, 500.0).num_grains, 1);
+    recipe.mean_grain_mm = 0.5;
+    const auto message = testing_tools::input_error_of([&] { sinter(graph, hidden, recipe, 1, {}, 500.0); });
+    EXPECT_NE(message.find("grains.sintering.mean_grain_mm = 0.5 cannot be reached: these 1000 sites can form 1 to 1000 grains, "
+                           "0.9847 to 9.847 mm across"),
+              std::string::npos)
+        << message;
+}
+
+TEST(Sintering, WeightsOfOneKeepTheVerySameBonds) {
+    const NeighbourGraph graph = cubic_lattice(12);
+    const std::vector<char> hidden(1728, 0);
+    const std::vector<double> ones(graph.size(), 1.0);
+    for (const double p : {0.0, 0.1, 0.25, 0.7, 1.0}) {
+        const Sintering plain = sinter(graph, hidden, with_probability(p), 11);
+        const Sintering weighted = sinter(graph, hidden, with_probability(p), 11, ones);
+        EXPECT_EQ(plain.num_kept_bonds, weighted.num_kept_bonds);
+        EXPECT_EQ(plain.grain_of_site, weighted.grain_of_site);
+    }
+    EXPECT_EQ(sinter(graph, hidden, with_grains(500), 11).grain_of_site,
+              sinter(graph, hidden, with_grains(500), 11, ones).grain_of_site);
+}
+
+TEST(Sintering, WeightedBondsAreKeptByTheLawOfTheRace) {
+    // 100,000 pairs of sites without further neighbours: each keeps its bond with probability 1 - (1 - p)^omega.
+    const std::int32_t pairs = 100'000;
+    NeighbourGraph graph;
+    for (std::int32_t n = 0; n < pairs; ++n) graph.push_back({2 * n, 2 * n + 1});
+    const std::vector<char> hidden(2 * std::size_t(pairs), 0);
+    for (const double omega : {0.0, 0.3, 2.5})
+        for (const double p : {0.1, 0.6}) {
+            const double expected = 1.0 - std::pow(1.0 - p, omega);
+            const Sintering result = sinter(graph, hidden, with_probability(p), 3, std::vector<double>(graph.size(), omega));
+            EXPECT_NEAR(double(result.num_kept_bonds) / pairs, expected, 4.0 * std::sqrt(expected * (1.0 - expected) / pairs));
+        }
+}
+
+TEST(Sintering, BondsOfWeightZeroAreNeverKept) {
+    const NeighbourGraph graph = {{0, 1}, {1, 2}, {2, 3}};
+    const std::vector<double> weights = {1.0, 0.0, 1.0};
+    EXPECT_EQ(sinter(graph, {0, 0, 0, 0}, with_probability(1.0), 1, weights).grain_of_site,
+              (std::vector<std::int32_t>{1, 1, 2, 2}));
+    const auto message = testing_tools::input_error_of([&] { sinter(graph, {0, 0, 0, 0}, with_grains(1), 1, weights); });
+    EXPECT_NE(message.find("can form 2 to 4 grains"), std::string::npos) << message;
+}
+
+TEST(Sintering, DoesNotDependOnThreads) {
+    const NeighbourGraph graph = cubic_lattice(20);
+    const std::vector<char> hidden(8000, 0);
+    const auto run = [&] { return sinter(graph, hidden, with_probability(0.24), 2).grain_of_site; };
+    EXPECT_EQ(testing_tools::with_threads(1, run), testing_tools::with_threads(2, run));
+}
+
 TEST(Sintering, HiddenSitesBelongToNoGrainAndNumbersFollowTheLowestSite) {
     const NeighbourGraph graph = {{0, 4}, {1, 2}};
     const Sintering result = sinter(graph, {0, 0, 0, 1, 0}, with_probability(1.0), 1);
@@ -118,11 +202,12 @@ TEST(Sintering, DelaunayGraphEqualsTheReference) {
     ShapeRecipe cube;
     cube.kind = ShapeKind::box;
     cube.size_mm = {10.0, 10.0, 10.0};
-    const SiteSet set = sample_sites(*make_shape(cube), 27'000, 1);
+    const auto shape = make_shape(cube);
+    const SiteSet set = sample_sites(*shape, 27'000, 1);
     GrainsRecipe recipe;
     recipe.weight[0].kind = WeightKind::none;
     const std::vector<char> hidden(27'000, 0);
-    const NeighbourGraph graph = delaunay_graph(weigh_sites(set, recipe), hidden);
+    const NeighbourGraph graph = delaunay_graph(weigh_sites(set, recipe, *shape).sites, hidden);
     EXPECT_NEAR(2.0 * double(graph.size()) / 27'000.0, 15.2, 0.3);
     const double rows[4][3] = {{0.05, 0.628, 0.0017}, {0.07, 0.479, 0.0109}, {0.12, 0.196, 0.7108}, {0.22, 0.031, 0.9664}};
     for (const auto& [p, grains_per_site, largest] : rows) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "modeler/point_grid.h"
+#include "modeler/sample_cells.h"
 #include "modeler/sample_elimination.h"
 #include "modeler/sites.h"
 #include "modeler_test_tools.h"
@@ -126,6 +129,66 @@ TEST(SampleElimination, TakesTheMostCrowdedAndTheLowestIndexOfEquals) {
     const std::vector<openvdb::Vec3d> samples = {{0, 0, 0}, {1, 0, 0}, {9, 0, 0}};
     EXPECT_EQ(eliminate_samples(samples, 2, 1.0), (std::vector<std::size_t>{1, 2}));
     EXPECT_EQ(eliminate_samples(samples, 3, 1.0), (std::vector<std::size_t>{0, 1, 2}));
+}
+
+/// The definition, literally: crowding summed up anew for every choice.
+std::vector<std::size_t> eliminate_one_by_one(const std::vector<openvdb::Vec3d>& samples, std::size_t target, double r_max) {
+    const double kept = double(target) / double(samples.size());
+    const double nearest = 0.65 * (1.0 - std::pow(kept, 1.5));
+    std::vector<std::size_t> alive(samples.size());
+    std::iota(alive.begin(), alive.end(), 0);
+    while (alive.size() > target) {
+        std::size_t most_crowded = 0;
+        double highest = -1.0;
+        for (std::size_t a = 0; a < alive.size(); ++a) {
+            double crowding = 0.0;
+            for (const std::size_t b : alive) {
+                if (b == alive[a]) continue;
+                const double distance = (samples[alive[a]] - samples[b]).length() / (2.0 * r_max);
+                if (distance < 1.0) crowding += std::pow(1.0 - std::max(distance, nearest), 8.0);
+            }
+            if (crowding > highest) {
+                highest = crowding;
+                most_crowded = a;
+            }
+        }
+        alive.erase(alive.begin() + std::ptrdiff_t(most_crowded));
+    }
+    return alive;
+}
+
+TEST(SampleElimination, IsTheDefinitions) {
+    const openvdb::BBoxd box(openvdb::Vec3d(0.0), {1.0, 2.0, 3.0});
+    std::vector<openvdb::Vec3d> samples;
+    for (std::size_t n = 0; n < 400; ++n) samples.push_back(random_point(box, 21, n));
+    for (const std::size_t target : {1, 30, 80, 300, 399, 400})
+        EXPECT_EQ(eliminate_samples(samples, target, packing_radius(box.volume(), target)),
+                  eliminate_one_by_one(samples, target, packing_radius(box.volume(), target)))
+            << target;
+    // Far more crowded than meant, with duplicates.
+    samples.resize(150);
+    samples.insert(samples.end(), samples.begin(), samples.begin() + 50);
+    EXPECT_EQ(eliminate_samples(samples, 60, 1.0).size(), 60u);
+}
+
+TEST(SampleElimination, DoesNotDependOnThreads) {
+    // Enough samples that several threads share the work.
+    const openvdb::BBoxd box(openvdb::Vec3d(0.0), openvdb::Vec3d(1.0));
+    std::vector<openvdb::Vec3d> samples;
+    for (std::size_t n = 0; n < 100'000; ++n) samples.push_back(random_point(box, 22, n));
+    const auto thin_out = [&] { return eliminate_samples(samples, 20'000, packing_radius(1.0, 20'000)); };
+    const auto one = testing_tools::with_threads(1, thin_out);
+    EXPECT_EQ(one.size(), 20'000u);
+    EXPECT_EQ(one, testing_tools::with_threads(2, thin_out));
+    EXPECT_EQ(one, testing_tools::with_threads(3, thin_out));
+}
+
+TEST(ShortestDistance, IsFoundFromAnyGuess) {
+    std::vector<openvdb::Vec3d> points = {{0, 0, 0}, {0, 3, 4}, {100, 0, 0}, {100, 7, 0}};
+    for (const double guess : {1e-3, 0.1, 5.0, 1e4}) EXPECT_DOUBLE_EQ(shortest_distance(points, guess), 5.0);
+    points.push_back(points.back());
+    EXPECT_EQ(shortest_distance(points, 1.0), 0.0);
+    EXPECT_EQ(shortest_distance({{1, 2, 3}}, 1.0), 0.0);
 }
 
 }  // namespace

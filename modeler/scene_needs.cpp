@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "modeler/scene_needs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formats/error.h"
+#include "formats/units.h"
+
+namespace opal {
+namespace {
+
+/// Half an 8-bit step of white.
+constexpr double invisible_change = 0.5 / 255.0;
+/// Part of space that touching spheres fill in fcc packing.
+const double fcc_fill = units::pi / (3.0 * std::sqrt(2.0));
+
+const ObjectDescription& find_opal(const SceneDescription& scene, const std::filesystem::path& output) {
+    std::vector<const ObjectDescription*> opals;
+    std::string files;
+    for (const ObjectDescription& object : scene.objects) {
+        if (object.kind != ObjectKind::opal) continue;
+        if (object.file.filename() == output.filename()) return object;
+        opals.push_back(&object);
+        files += (files.empty() ? "" : ", ") + object.file.filename().string();
+    }
+    if (opals.size() == 1) return *opals.front();
+    if (opals.empty()) throw InputError("--for: the scene has no [[object]] of kind opal");
+    throw InputError(fmt::format("--for: the scene has several opals ({}), none of them in a file named {}", files,
+                                 output.filename().string()));
+}
+
+openvdb::Vec3d rotated(openvdb::Vec3d v, const std::array<double, 3>& rotate_deg) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double angle_rad = units::rad_from_deg(rotate_deg[static_cast<std::size_t>(axis)]);
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        const double va = std::cos(angle_rad) * v[a] - std::sin(angle_rad) * v[b];
+        v[b] = std::sin(angle_rad) * v[a] + std::cos(angle_rad) * v[b];
+        v[a] = va;
+    }
+    return v;
+}
+
+/// Depth before the camera of the nearest corner of the gem's box, in the scene's millimetres.
+double nearest_depth_mm(const CameraDescription& camera, const ObjectDescription& opal, const openvdb::BBoxd& bounds_mm) {
+    const openvdb::Vec3d position_mm(camera.position_mm.data());
+    const openvdb::Vec3d forward = (openvdb::Vec3d(camera.target_mm.data()) - position_mm).unitSafe();
+    double nearest_mm = std::numeric_limits<double>::infinity();
+    for (int corner = 0; corner < 8; ++corner) {
+        openvdb::Vec3d point_mm;
+        for (int axis = 0; axis < 3; ++axis)
+            point_mm[axis] = (corner >> axis & 1) != 0 ? bounds_mm.max()[axis] : bounds_mm.min()[axis];
+        const openvdb::Vec3d world_mm =
+            rotated(point_mm * opal.scale, opal.rotate_deg) + openvdb::Vec3d(opal.translate_mm.data());
+        nearest_mm = std::min(nearest_mm, (world_mm - position_mm).dot(forward));
+    }
+    return nearest_mm;
+}
+
+/// Edge of a pixel's share of the picture at the gem; 0 where the camera is in the gem's box.
+double pixel_footprint_mm(const SceneDescription& scene, const ObjectDescription& opal, const openvdb::BBoxd& bounds_mm) {
+    const CameraDescription& camera = scene.camera;
+    double picture_height_mm = camera.view_height_mm;
+    if (camera.kind == CameraKind::perspective) {
+        const double depth_mm = nearest_depth_mm(camera, opal, bounds_mm);
+        picture_height_mm = 2.0 * std::max(0.0, depth_mm) * std::tan(0.5 * units::rad_from_deg(camera.vertical_fov_deg));
+    }
+    return picture_height_mm / scene.render.height / opal.scale;
+}
+
+void drop_field(FieldRecipe& field, const std::string& name, double coefficient_per_mm, double longest_path_mm,
+                SceneNeeds& needs) {
+    if (field.kind == FieldKind::constant || field.kind == FieldKind::grid) return;
+    const double change = 2.0 * field.contrast * coefficient_per_mm * longest_path_mm;
+    if (change >= invisible_change) return;
+    needs.dropped.push_back(fmt::format("{}: changes transmission by {:.2g} at most", name, change));
+    field = {};
+}
+
+void drop_what_does_not_show(Recipe& recipe, double longest_path_mm, SceneNeeds& needs) {
+    BaseColorRecipe& color = recipe.base_color;
+    // Rayleigh scattering is strongest at the short end of the visible range.
+    const double rayleigh_at_360nm = std::pow(400.0 / 360.0, 4);
+    drop_field(color.sigma_a_field, "sigma_a_field", color.sigma_a_per_mm, longest_path_mm, needs);
+    drop_field(color.sigma_s_rayleigh_field, "sigma_s_rayleigh_field", color.sigma_s_rayleigh_400nm_per_mm * rayleigh_at_360nm,
+               longest_path_mm, needs);
+    drop_field(color.sigma_s_mie_field, "sigma_s_mie_field", color.sigma_s_mie_per_mm, longest_path_mm, needs);
+    if (recipe.output.has(OutputGrid::weight)) {
+        std::erase(recipe.output.grids, OutputGrid::weight);
+        needs.dropped.push_back("grid weight: nothing is rendered from it");
+    }
+    if (recipe.output.for_blender) {
+        recipe.output.for_blender = false;
+        needs.dropped.push_back("display twins for Blender: nothing is rendered from them");
+    }
+}
+
+}  // namespace
+
+SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std::filesystem::path& output,
+                        const openvdb::BBoxd& bounds_mm, double accepted_error_pixels) {
+    const ObjectDescription& opal = find_opal(scene, output);
+    const openvdb::Vec3d extents_mm = bounds_mm.extents();
+    SceneNeeds needs;
+    needs.recipe_voxel_size_mm = recipe.resolution > 0
+                                     ? std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / recipe.resolution
+                                     : recipe.grains.voxel_size_mm;
+    needs.pixel_footprint_mm = pixel_footprint_mm(scene, opal, bounds_mm);
+    const double half_diagonal = 0.5 * std::sqrt(3.0);
+    if (needs.pixel_footprint_mm > 0.0) {
+        needs.voxel_size_mm = accepted_error_pixels * needs.pixel_footprint_mm / half_diagonal;
+        recipe.grains.voxel_size_mm = needs.voxel_size_mm;
+        recipe.resolution = 0;
+    } else {
+        needs.voxel_size_mm = needs.recipe_voxel_size_mm;
+    }
+    needs.boundary_error_mm = half_diagonal * needs.voxel_size_mm;
+    needs.boundary_error_pixels = needs.pixel_footprint_mm > 0.0 ? needs.boundary_error_mm / needs.pixel_footprint_mm : 0.0;
+    const double n_eff = fcc_fill * recipe.crystal.n_sphere + (1.0 - fcc_fill) * recipe.crystal.n_medium;
+    needs.lens_magnification = n_eff < 2.0 ? n_eff / (2.0 - n_eff) : std::numeric_limits<double>::infinity();
+    drop_what_does_not_show(recipe, extents_mm.length(), needs);
+    return needs;
+}
+
+nlohmann::json scene_needs_to_json(const SceneNeeds& needs) {
+    const double ratio = needs.recipe_voxel_size_mm / needs.voxel_size_mm;
+    return {{"pixel_footprint_mm", needs.pixel_footprint_mm},     {"voxel_size_mm", needs.voxel_size_mm},
+            {"recipe_voxel_size_mm", needs.recipe_voxel_size_mm}, {"voxels_over_recipe", ratio * ratio * ratio},
+            {"boundary_error_mm", needs.boundary_error_mm},       {"boundary_error_pixels", needs.boundary_error_pixels},
+            {"lens_magnification", needs.lens_magnification},     {"dropped", needs.dropped}};
+}
+
+std::string scene_needs_summary(const SceneNeeds& needs) {
+    if (!(needs.pixel_footprint_mm > 0.0))
+        return "scene    the camera is within the gem's box: the recipe's resolution is kept\n";
+    const double ratio = std::pow(needs.recipe_voxel_size_mm / needs.voxel_size_mm, 3);
+    std::string text = fmt::format(
+        "scene    a pixel spans {:.3g} mm of the gem: voxels of {:.3g} mm, {:.3g} times as many as the recipe's\n"
+        "         grain boundaries are off by {:.3g} mm at most, {:.2g} pixels (up to {:.2g} where the gem's own lens "
+        "magnifies)\n",
+        needs.pixel_footprint_mm, needs.voxel_size_mm, ratio, needs.boundary_error_mm, needs.boundary_error_pixels,
+        needs.boundary_error_pixels * needs.lens_magnification);
+    for (const std::string& what : needs.dropped) text += fmt::format("         left out: {}\n", what);
+    return text;
+}
+
+}  // namespace opal

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "modeler/scene_needs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "modeler/build.h"
+#include "modeler_test_tools.h"
+
+namespace opal {
+namespace {
+
+const std::string recipe_text = "[shape]\nkind = \"box\"\nsize_mm = [8, 4, 2]\n[grains]\nvoxel_size_mm = 0.05\nnum_sites = 20\n";
+
+/// A camera 50 mm away on -Y, looking at the origin: a picture of 600 lines spans 2 z tan(15 degrees) at depth z.
+SceneDescription scene_with(const std::string& opal, const std::string& camera = "") {
+    return parse_scene(
+        "[render]\nwidth = 800\nheight = 600\n[camera]\nposition_mm = [0, -50, 0]\ntarget_mm = [0, 0, 0]\n"
+        "vertical_fov_deg = 30\n" +
+            camera + "\n[[object]]\nkind = \"opal\"\nfile = \"gem.vdb\"\n" + opal,
+        "s.toml", {});
+}
+
+Recipe recipe_with(const std::string& more = "") {
+    return parse_recipe(recipe_text + more, "r.toml", {});
+}
+
+SceneNeeds fit(Recipe& recipe, const SceneDescription& scene, double error_pixels = 1.0) {
+    return fit_to_scene(recipe, scene, "out/gem.vdb", openvdb::BBoxd({-4, -2, -1}, {4, 2, 1}), error_pixels);
+}
+
+double footprint_at(double depth_mm) {
+    return 2.0 * depth_mm * std::tan(15.0 * std::acos(-1.0) / 180.0) / 600.0;
+}
+
+TEST(SceneNeeds, VoxelsFollowThePixelsAtTheNearestPoint) {
+    Recipe recipe = recipe_with();
+    const SceneNeeds needs = fit(recipe, scene_with(""));
+    EXPECT_NEAR(needs.pixel_footprint_mm, footprint_at(48.0), 1.0e-12);  // the box reaches 2 mm towards the camera
+    EXPECT_NEAR(needs.boundary_error_mm, needs.pixel_footprint_mm, 1.0e-12);
+    EXPECT_NEAR(needs.boundary_error_pixels, 1.0, 1.0e-12);
+    EXPECT_NEAR(recipe.grains.voxel_size_mm, 2.0 / std::sqrt(3.0) * footprint_at(48.0), 1.0e-12);
+    Recipe finer = recipe_with();
+    EXPECT_NEAR(fit(finer, scene_with(""), 0.25).voxel_size_mm, 0.25 * needs.voxel_size_mm, 1.0e-12);
+}
+
+TEST(SceneNeeds, TheGemsPlacementCounts) {
+    Recipe a = recipe_with(), b = recipe_with(), c = recipe_with(), d = recipe_with();
+    // Turned by 90 degrees about Z the long side points at the camera.
+    EXPECT_NEAR(fit(a, scene_with("rotate_deg = [0, 0, 90]\n")).pixel_footprint_mm, footprint_at(46.0), 1.0e-12);
+    // About X first: the 2 mm side points at the camera, and Z then leaves 8 mm across it.
+    EXPECT_NEAR(fit(b, scene_with("rotate_deg = [90, 0, 0]\n")).pixel_footprint_mm, footprint_at(49.0), 1.0e-12);
+    EXPECT_NEAR(fit(c, scene_with("translate_mm = [0, -10, 0]\n")).pixel_footprint_mm, footprint_at(38.0), 1.0e-12);
+    // Twice as large: nearer, and a millimetre of the recipe spans two of the scene.
+    EXPECT_NEAR(fit(d, scene_with("scale = 2\n")).pixel_footprint_mm, 0.5 * footprint_at(46.0), 1.0e-12);
+}
+
+TEST(SceneNeeds, OrthographicPicturesHaveOneScale) {
+    Recipe recipe = recipe_with();
+    const SceneNeeds needs = fit(recipe, scene_with("", "kind = \"orthographic\"\nview_height_mm = 12\n"));
+    EXPECT_NEAR(needs.pixel_footprint_mm, 0.02, 1.0e-12);
+}
+
+TEST(SceneNeeds, ACameraInsideKeepsTheRecipe) {
+    Recipe recipe = recipe_with();
+    const SceneNeeds needs = fit(recipe, scene_with("translate_mm = [0, -49, 0]\n"));
+    EXPECT_EQ(needs.pixel_footprint_mm, 0.0);
+    EXPECT_EQ(recipe.grains.voxel_size_mm, 0.05);
+    EXPECT_NE(scene_needs_summary(needs).find("recipe's resolution is kept"), std::string::npos);
+}
+
+TEST(SceneNeeds, OnlyWhatCannotBeSeenIsDropped) {
+    // 2 x 0.5 x 1e-4 /mm over the diagonal of 9.2 mm: 0.0009 of the light; with 0.1 /mm nearly all of it.
+    const std::string faint = "[base_color]\nsigma_a_per_mm = 1e-4\nsigma_a_field = { kind = \"noise\", contrast = 0.5 }\n";
+    const std::string strong = "[base_color]\nsigma_a_per_mm = 0.1\nsigma_a_field = { kind = \"noise\", contrast = 0.5 }\n";
+    const std::string grids = "[output]\ngrids = [\"grain_id\", \"shape\", \"weight\", \"sites\"]\nfor_blender = true\n";
+    Recipe dropped = recipe_with(faint + grids), kept = recipe_with(strong);
+    EXPECT_EQ(fit(dropped, scene_with("")).dropped.size(), 3u);
+    EXPECT_EQ(dropped.base_color.sigma_a_field.kind, FieldKind::constant);
+    EXPECT_FALSE(dropped.output.has(OutputGrid::weight));
+    EXPECT_FALSE(dropped.output.for_blender);
+    EXPECT_TRUE(fit(kept, scene_with("")).dropped.empty());
+    EXPECT_EQ(kept.base_color.sigma_a_field.kind, FieldKind::noise);
+}
+
+TEST(SceneNeeds, WhichOpalIsMeant) {
+    SceneDescription two = scene_with("");
+    two.objects.push_back(two.objects.front());
+    two.objects.back().file = "other.vdb";
+    two.objects.back().scale = 2.0;
+    Recipe recipe = recipe_with();
+    const openvdb::BBoxd box({-4, -2, -1}, {4, 2, 1});
+    EXPECT_NEAR(fit_to_scene(recipe, two, "gem.vdb", box, 1.0).pixel_footprint_mm, footprint_at(48.0), 1.0e-12);
+    EXPECT_NEAR(fit_to_scene(recipe, two, "other.vdb", box, 1.0).pixel_footprint_mm, 0.5 * footprint_at(46.0), 1.0e-12);
+    const auto error = [&] { fit_to_scene(recipe, two, "third.vdb", box, 1.0); };
+    EXPECT_NE(testing_tools::input_error_of(error).find("several opals (gem.vdb, other.vdb)"), std::string::npos);
+    two.objects.clear();
+    EXPECT_NE(testing_tools::input_error_of(error).find("no [[object]] of kind opal"), std::string::npos);
+}
+
+TEST(SceneNeeds, TheBuildUsesAndReportsThem) {
+    const Recipe recipe = recipe_with();
+    const BuiltOpal built = build_opal(
+        recipe, [](const std::string&) {}, SceneFit{scene_with(""), "gem.vdb", 4.0});
+    ASSERT_TRUE(built.report.scene_needs.has_value());
+    EXPECT_NEAR(built.asset.grain_id->voxelSize().x(), 4.0 * 2.0 / std::sqrt(3.0) * footprint_at(48.0), 1.0e-12);
+    EXPECT_NE(built.asset.recipe_toml.find("voxel_size_mm = 0.19"), std::string::npos) << built.asset.recipe_toml;
+}
+
+}  // namespace
+}  // namespace opal
