@@ -94,7 +94,10 @@ class Canvas {
         pls_.col0(color.index);
         symbol(at, y[n - 1] + t * (y[n] - y[n - 1]));
     }
-    void symbol(double x, double y) { pls_.poin(1, &x, &y, filled_circle); }
+    void symbol(double x, double y) {
+        pls_.ssym(0.0, 2.5);
+        pls_.poin(1, &x, &y, filled_circle);
+    }
     void label(const Color& color, double x, double y, const std::string& text) {
         pls_.col0(color.index);
         pls_.schr(0.0, 0.8);
