@@ -8,6 +8,7 @@
 #include "formats/command.h"
 #include "formats/report.h"
 #include "formats/units.h"
+#include "modeler/cgal_version.h"
 
 namespace opal {
 
@@ -60,7 +61,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
     json["percolation_threshold"] =
         report.percolation_threshold ? nlohmann::json(*report.percolation_threshold) : nlohmann::json();
     json["warnings"] = report.warnings;
-    json["versions"] = version_report();
+    json["versions"] = version_report({{"cgal", cgal_version()}});
     json["seed"] = asset.seed;
     json["recipe"] = asset.recipe_toml;
     return json;
