@@ -9,6 +9,7 @@
 #include "formats/command.h"
 #include "formats/report.h"
 #include "formats/units.h"
+#include "modeler/cgal_version.h"
 
 namespace opal {
 
@@ -83,7 +84,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
     if (report.scene_needs) json["for_scene"] = scene_needs_to_json(*report.scene_needs);
     json["grain_statistics"] = grain_statistics_to_json(report.grain_statistics);
     json["warnings"] = report.warnings;
-    json["versions"] = version_report();
+    json["versions"] = version_report({{"cgal", cgal_version()}});
     json["seed"] = asset.seed;
     json["recipe"] = asset.recipe_toml;
     return json;

@@ -5,7 +5,7 @@ set -eu
 
 packages="
   git ca-certificates g++ cmake ninja-build ccache pkg-config
-  libopenvdb-dev libnanovdb-dev libopenvdb-tools libboost-dev libboost-iostreams-dev libblosc-dev
+  libopenvdb-dev libnanovdb-dev libopenvdb-tools python3-openvdb libboost-dev libboost-iostreams-dev libblosc-dev
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev
   libopenimageio-dev libopenexr-dev libtbb-dev libembree-dev libassimp-dev
   libplplot-dev plplot-driver-cairo

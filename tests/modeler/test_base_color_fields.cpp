@@ -9,6 +9,7 @@
 #include "formats/field_summary.h"
 #include "formats/units.h"
 #include "modeler/build.h"
+#include "modeler/labelling.h"
 #include "modeler_test_tools.h"
 
 namespace opal {
@@ -229,6 +230,17 @@ TEST(BuildOutput, SitesAloneTakeNoVoxelsWhateverTheirSize) {
     const double exact_mm = std::cbrt(6.0 * 5.0 * 3.0 / double(fine.asset.num_grains()));
     EXPECT_NEAR(report["mean_grain_diameter_mm"].get<double>(), exact_mm, 4.0 * 0.01 / 3.0 * exact_mm);
     EXPECT_NE(report_summary(fine.report, fine.asset).find("none: sites alone"), std::string::npos);
+}
+
+TEST(BuildOutput, SitesThatWereReadBackGiveTheSameLabels) {
+    const OpalAsset asset = build_with("");
+    const std::string path = testing::TempDir() + "opal_read_back.vdb";
+    write_opal_asset(asset, path);
+    std::vector<std::string> notices;
+    const OpalAsset back = read_opal_asset(path, {}, notices);
+    std::vector<std::int32_t> grain_of_site;
+    for (const Site& site : back.sites) grain_of_site.push_back(site.grain);
+    EXPECT_TRUE(testing_tools::same_grids(*label_voxels(back.sites, grain_of_site, *back.shape), *asset.grain_id));
 }
 
 TEST(BuildOutput, TwinsNeedGrainIds) {

@@ -78,6 +78,8 @@ TEST(Build, ReportCountsWhatIsThere) {
         EXPECT_TRUE(json["counts"].contains(key)) << key;
     for (const char* stage : {"shape", "sites", "weights", "neighbour_graph", "sintering", "level_set", "labelling", "total"})
         EXPECT_TRUE(json["seconds"].contains(stage)) << stage;
+    for (const char* library : {"opal", "openvdb", "tbb", "cgal", "compiler"})
+        EXPECT_TRUE(json["versions"].contains(library)) << library;
     EXPECT_NE(report_summary(report, built.asset).find("120 from 300 sites"), std::string::npos);
 }
 
@@ -246,7 +248,30 @@ TEST(Info, TellsTheEffectiveIndexAndTheColor) {
     EXPECT_NEAR(description["size_mm"][0].get<double>(), 4.0, 0.126);
     const std::string text = opal_info_text(description);
     EXPECT_NE(text.find("579.6 nm"), std::string::npos) << text;
+    EXPECT_NE(text.find("cells       additive\n"), std::string::npos) << text;
     EXPECT_NE(text.find("sites       20 (0 hidden)"), std::string::npos) << text;
+}
+
+TEST(Info, TellsDisorderBoundariesAndFields) {
+    // Four whole periods of a sine around 2 mm^-1, between 1 and 3, symmetric about the sphere's middle.
+    BuiltOpal built = build(
+        "[shape]\nkind = \"sphere\"\nsize_mm = 4.0\n[grains]\nresolution = 32\nnum_sites = 20\n"
+        "[crystal]\nstacking_fault_probability = 0.2\nmosaic_spread_deg = 1.5\n[base_color]\nsigma_s_mie_per_mm = 2.0\n"
+        "sigma_s_mie_field = { kind = \"layers\", contrast = 0.5, scale_mm = 1.0 }\n");
+    built.asset.tessellation = TessellationKind::manhattan;
+    built.asset.boundary_noise.amplitude_mm = 0.05;
+    const nlohmann::json description = describe_opal(built.asset);
+    EXPECT_EQ(description["constants"]["stacking_fault_probability"], 0.2);
+    EXPECT_EQ(description["constants"]["mosaic_spread_deg"], 1.5);
+    EXPECT_EQ(description["tessellation"]["kind"], "manhattan");
+    const nlohmann::json& field = description["fields"]["sigma_s_mie"];
+    EXPECT_NEAR(field["min"].get<double>(), 1.0, 0.03);
+    EXPECT_NEAR(field["max"].get<double>(), 3.0, 0.03);
+    EXPECT_NEAR(field["mean"].get<double>(), 2.0, 0.1);
+    const std::string text = opal_info_text(description);
+    EXPECT_NE(text.find("cells       manhattan; boundaries displaced by up to 0.05 mm"), std::string::npos) << text;
+    EXPECT_NE(text.find("field       sigma_s_mie: 1"), std::string::npos) << text;
+    EXPECT_NE(text.find("stacking faults 0.2 per layer, mosaic spread 1.5 degrees"), std::string::npos) << text;
 }
 
 }  // namespace
