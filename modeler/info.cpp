@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "formats/field_summary.h"
 #include "formats/recipe_names.h"
+#include "formats/text.h"
 #include "formats/units.h"
 #include "modeler/build_report.h"
 
@@ -61,6 +63,20 @@ nlohmann::json describe_voxels(const OpalAsset& asset) {
             {"mean_grain_diameter_mm", mean_grain_diameter_mm(asset)}};
 }
 
+std::vector<std::string> grids_in(const OpalAsset& asset) {
+    const std::pair<const char*, bool> grids[] = {{grid_names::grain_id, asset.grain_id != nullptr},
+                                                  {grid_names::shape, asset.shape != nullptr},
+                                                  {grid_names::weight, asset.weight != nullptr},
+                                                  {grid_names::sigma_a_scale, asset.sigma_a_scale != nullptr},
+                                                  {grid_names::sigma_s_rayleigh, asset.sigma_s_rayleigh_400nm != nullptr},
+                                                  {grid_names::sigma_s_mie, asset.sigma_s_mie != nullptr},
+                                                  {grid_names::sites, !asset.sites.empty()}};
+    std::vector<std::string> names;
+    for (const auto& [name, there] : grids)
+        if (there) names.push_back(name);
+    return names;
+}
+
 /// Smallest, largest and mean value of each coefficient that varies.
 nlohmann::json describe_fields(const OpalAsset& asset) {
     nlohmann::json fields = nlohmann::json::object();
@@ -87,10 +103,15 @@ std::string fields_text(const nlohmann::json& fields) {
 std::string size_text(const nlohmann::json& d) {
     if (d["size_mm"].is_null()) return "size        not known: sites alone, no voxels\n";
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
-    return fmt::format("size        {:.4g} x {:.4g} x {:.4g} mm, {:.4g} mm^3\n", number(d["size_mm"][0]), number(d["size_mm"][1]),
-                       number(d["size_mm"][2]), number(d["volume_mm3"])) +
-           fmt::format("voxels      {} of {:.4g} mm, in {} leaves\n", d["voxels"].get<std::uint64_t>(),
-                       number(d["voxel_size_mm"]), d["leaves"].get<std::uint64_t>());
+    std::string text = fmt::format("size        {:.4g} x {:.4g} x {:.4g} mm, {:.4g} mm^3\nextent     ", number(d["size_mm"][0]),
+                                   number(d["size_mm"][1]), number(d["size_mm"][2]), number(d["volume_mm3"]));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low_mm = number(d["lowest_corner_mm"][axis]);
+        text += fmt::format(" {} {:.4g} to {:.4g}{}", "xyz"[axis], low_mm, low_mm + number(d["size_mm"][axis]),
+                            axis < 2 ? "," : " mm\n");
+    }
+    return text + fmt::format("voxels      {} of {:.4g} mm, in {} leaves\n", d["voxels"].get<std::uint64_t>(),
+                              number(d["voxel_size_mm"]), d["leaves"].get<std::uint64_t>());
 }
 
 std::string tessellation_text(const nlohmann::json& tessellation) {
@@ -117,7 +138,7 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
                                    {"boundary_noise_octaves", asset.boundary_noise.octaves}};
     description["constants"] = describe_constants(asset.constants);
     description["fields"] = describe_fields(asset);
-    description["weight_grid"] = bool(asset.weight);
+    description["grids"] = grids_in(asset);
     description["seed"] = asset.seed;
     description["program_version"] = asset.program_version;
     description["schema_version"] = asset.schema_version;
@@ -128,7 +149,7 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
 std::string opal_info_text(const nlohmann::json& d) {
     const nlohmann::json& c = d["constants"];
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
-    std::string text = size_text(d);
+    std::string text = size_text(d) + fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
     text += fmt::format("grains      {}{}\n", d["grains"].get<std::uint64_t>(),
                         d["mean_grain_diameter_mm"].is_null()
                             ? std::string()
@@ -137,7 +158,7 @@ std::string opal_info_text(const nlohmann::json& d) {
     text += tessellation_text(d["tessellation"]);
     text += fmt::format("spheres     {:.4g} nm across, index {:.5g} in {:.5g}: effective index {:.5g}\n",
                         number(c["sphere_diameter_nm"]), number(c["n_sphere"]), number(c["n_medium"]), number(c["n_eff"]));
-    text += fmt::format("color       {:.1f} nm from (111) planes at normal incidence; coherence length {:.4g} um\n",
+    text += fmt::format("color       up to {:.1f} nm, from light straight onto (111) planes; coherence length {:.4g} um\n",
                         number(c["wavelength_111_normal_nm"]), number(c["coherence_length_um"]));
     text += fmt::format(
         "body        absorber {}, {:.4g} /mm at 550 nm; scattering {:.4g} /mm (Rayleigh, 400 nm) and {:.4g} /mm (Mie)\n",
