@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 
 #include "formats/atomic_file.h"
 #include "formats/error.h"
@@ -38,11 +36,6 @@ void write_image(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
 
 }  // namespace
 
-int Image::find_channel(const std::string& name) const {
-    const auto found = std::find(channel_names.begin(), channel_names.end(), name);
-    return found == channel_names.end() ? -1 : static_cast<int>(found - channel_names.begin());
-}
-
 void write_exr(const std::filesystem::path& path, const Image& image) {
     OIIO::ImageSpec spec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::FLOAT);
     spec.channelnames = image.channel_names;
@@ -51,17 +44,6 @@ void write_exr(const std::filesystem::path& path, const Image& image) {
     spec.attribute("DateTime", "");
     for (const auto& [key, value] : image.attributes) spec.attribute(key, value);
     write_image(path, spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
-}
-
-void write_png(const std::filesystem::path& path, const Image& image) {
-    std::vector<std::uint8_t> bytes(image.pixels.size());
-    std::transform(image.pixels.begin(), image.pixels.end(), bytes.begin(), [](float value) {
-        return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(std::isfinite(value) ? value : 0.0f, 0.0f, 1.0f)));
-    });
-    OIIO::ImageSpec spec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    for (const auto& [key, value] : image.attributes) spec.attribute(key, value);
-    write_image(path, spec, OIIO::TypeDesc::UINT8, bytes.data());
 }
 
 Image read_image(const std::filesystem::path& path) {

@@ -63,6 +63,20 @@ nlohmann::json describe_voxels(const OpalAsset& asset) {
             {"mean_grain_diameter_mm", mean_grain_diameter_mm(asset)}};
 }
 
+std::vector<std::string> grids_in(const OpalAsset& asset) {
+    const std::pair<const char*, bool> grids[] = {{grid_names::grain_id, asset.grain_id != nullptr},
+                                                  {grid_names::shape, asset.shape != nullptr},
+                                                  {grid_names::weight, asset.weight != nullptr},
+                                                  {grid_names::sigma_a_scale, asset.sigma_a_scale != nullptr},
+                                                  {grid_names::sigma_s_rayleigh, asset.sigma_s_rayleigh_400nm != nullptr},
+                                                  {grid_names::sigma_s_mie, asset.sigma_s_mie != nullptr},
+                                                  {grid_names::sites, !asset.sites.empty()}};
+    std::vector<std::string> names;
+    for (const auto& [name, there] : grids)
+        if (there) names.push_back(name);
+    return names;
+}
+
 /// Smallest, largest and mean value of each coefficient that varies.
 nlohmann::json describe_fields(const OpalAsset& asset) {
     nlohmann::json fields = nlohmann::json::object();
@@ -139,6 +153,10 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
                                    {"boundary_noise_octaves", asset.boundary_noise.octaves}};
     description["constants"] = describe_constants(asset.constants);
     description["fields"] = describe_fields(asset);
+<<<<<<< HEAD
+=======
+    description["grids"] = grids_in(asset);
+>>>>>>> wt-assets
     description["seed"] = asset.seed;
     description["program_version"] = asset.program_version;
     description["schema_version"] = asset.schema_version;
@@ -149,8 +167,12 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
 std::string opal_info_text(const nlohmann::json& d) {
     const nlohmann::json& c = d["constants"];
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
+<<<<<<< HEAD
     std::string text = size_text(d);
     text += fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
+=======
+    std::string text = size_text(d) + fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
+>>>>>>> wt-assets
     text += fmt::format("grains      {}{}\n", d["grains"].get<std::uint64_t>(),
                         d["mean_grain_diameter_mm"].is_null()
                             ? std::string()

@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "../renderer/small_opal.h"
 #include "formats/opal_asset_io.h"
@@ -137,6 +138,22 @@ TEST_F(Clients, SitesAloneAreRefusedByTheRendererAlone) {
     std::ofstream(*folder_ / "scene.toml") << "[[object]]\nkind = \"opal\"\nfile = \"sites.vdb\"\n";
     expect_failure(opal_render + " " + (*folder_ / "scene.toml").string() + " -o " + (*folder_ / "out.exr").string(), 2,
                    "sites.vdb: holds sites alone, no grain_id");
+}
+
+TEST_F(Clients, SitesAloneTakeLittleMemoryAtAnyResolution) {
+    std::ofstream(*folder_ / "many.toml") << "[shape]\nkind = \"ellipsoid\"\n[grains]\nnum_sites = 27000\n"
+                                             "[output]\ngrids = [\"sites\"]\n";
+    const std::string report = (*folder_ / "report.json").string();
+    for (const char* voxels : {"grains.voxel_size_mm=0.0001", "grains.resolution=64"}) {
+        const ProgramResult built = run_program(opal_model + " build " + (*folder_ / "many.toml").string() + " -o " +
+                                                (*folder_ / "many.vdb").string() + " --set " + voxels + " --report " + report);
+        ASSERT_EQ(built.exit_code, 0) << built.err;
+        const nlohmann::json json = nlohmann::json::parse(std::ifstream(report));
+        EXPECT_LT(json["peak_memory_bytes"].get<double>(), 100.0e6) << voxels;
+        // Nothing but what makes the sites and their grains.
+        for (const char* stage : {"level_set", "labelling", "fields"}) EXPECT_FALSE(json["seconds"].contains(stage)) << stage;
+        EXPECT_LT(json["seconds"]["write"].get<double>(), 0.5);
+    }
 }
 
 TEST_F(Clients, TheRendererSaysWhatItLeavesOut) {

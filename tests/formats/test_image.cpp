@@ -28,6 +28,24 @@ TEST(Image, ExrKeepsFloatsChannelsAndText) {
     std::filesystem::remove(path);
 }
 
+TEST(Image, PngKeepsEightBitsAndClamps) {
+    const auto path = std::filesystem::temp_directory_path() / "opal_image_test.png";
+    Image image;
+    image.width = 5;
+    image.height = 2;
+    image.channel_names = {"R", "G", "B"};
+    for (int i = 0; i < 30; ++i) image.pixels.push_back(float(i) / 24.0f - 0.1f);
+    write_png(path, image);
+    const Image back = read_image(path);
+    ASSERT_EQ(back.width, 5);
+    ASSERT_EQ(back.height, 2);
+    ASSERT_EQ(back.num_channels(), 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        EXPECT_NEAR(back.pixels[i], std::clamp(image.pixels[i], 0.0f, 1.0f), 0.501f / 255.0f) << i;
+    EXPECT_INPUT_ERROR(write_png("/no/such/folder/a.png", image), "does not exist");
+    std::filesystem::remove(path);
+}
+
 TEST(Image, ReadErrors) {
     EXPECT_INPUT_ERROR(read_image("nothing.exr"), "nothing.exr: no such image file");
     const auto path = std::filesystem::temp_directory_path() / "opal_not_an_image.exr";

@@ -89,6 +89,8 @@ TEST(Recipe, ErrorsAreLocated) {
                        "sintering.probability: 1.5 is out of range; allowed: 0 to 1");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { probability = -0.1 }\n"), "allowed: 0 to 1");
     EXPECT_INPUT_ERROR(parse(minimal + "[crystal]\nn_sphere = nan\n"), "r.toml:4:12: crystal.n_sphere: nan is out of range");
+    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nsigma_a_reference_nm = 900.0\n"),
+                       "sigma_a_reference_nm: 900 is out of range; allowed: 360 to 830");
     EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nsigma_a_per_mm = -1.0\n"),
                        "sigma_a_per_mm: -1 is out of range; allowed: 0 to");
     EXPECT_INPUT_ERROR(parse("[shape]\nkind = \"elipsoid\"\n"), "r.toml:2:8: shape.kind: 'elipsoid' is not known");
