@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/image_text.h"
 
-<<<<<<< HEAD
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-=======
 #include <ft2build.h>
 
 #include <algorithm>
@@ -14,18 +10,10 @@
 #include <string_view>
 #include <vector>
 #include FT_FREETYPE_H
->>>>>>> wt-assets
 
 namespace opal {
 namespace {
 
-<<<<<<< HEAD
-/// Extent of a text relative to the left end of its baseline; not defined where the font cannot be found.
-OIIO::ROI extent(const std::string& text, const TextStyle& style) {
-    const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(text, style.height_px, style.font);
-    if (!roi.defined()) OIIO::geterror();  // the answer says it; an error left unread is printed at exit
-    return roi;
-=======
 std::filesystem::path find_font(const std::string& name) {
     for (const char* folder : {"/usr/share/fonts", "/usr/local/share/fonts"}) {
         std::error_code error;
@@ -90,28 +78,11 @@ void blend(Image& image, int left, int top, const FT_Bitmap& bitmap, const std::
             float* const pixel = image.pixel(left + column, top + row);
             for (int c = 0; c < 3; ++c) pixel[c] += cover * (color[std::size_t(c)] - pixel[c]);
         }
->>>>>>> wt-assets
 }
 
 }  // namespace
 
 int text_width_px(const std::string& text, const TextStyle& style) {
-<<<<<<< HEAD
-    const OIIO::ROI roi = extent(text, style);
-    return roi.defined() ? roi.width() : 0;
-}
-
-bool draw_text(Image& image, int x, int y, const std::string& text, const TextStyle& style) {
-    const OIIO::ROI roi = extent(text, style);
-    if (!roi.defined()) return false;
-    if (style.align == TextAlign::center) x -= roi.width() / 2;
-    if (style.align == TextAlign::right) x -= roi.width();
-    // The middle of a capital letter, so that lines with and without descenders stand on one baseline.
-    const int baseline = y + (style.height_px * 36 + 50) / 100;
-    OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::FLOAT),
-                          image.pixels.data());
-    return OIIO::ImageBufAlgo::render_text(buffer, x, baseline, text, style.height_px, style.font, style.color);
-=======
     const Font font(style);
     return font.found() ? width_px(font, characters(text)) : 0;
 }
@@ -132,7 +103,6 @@ bool draw_text(Image& image, int x, int y, const std::string& text, const TextSt
             pen += glyph->advance.x;
         }
     return true;
->>>>>>> wt-assets
 }
 
 }  // namespace opal

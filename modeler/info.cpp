@@ -153,10 +153,6 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
                                    {"boundary_noise_octaves", asset.boundary_noise.octaves}};
     description["constants"] = describe_constants(asset.constants);
     description["fields"] = describe_fields(asset);
-<<<<<<< HEAD
-=======
-    description["grids"] = grids_in(asset);
->>>>>>> wt-assets
     description["seed"] = asset.seed;
     description["program_version"] = asset.program_version;
     description["schema_version"] = asset.schema_version;
@@ -167,12 +163,8 @@ nlohmann::json describe_opal(const OpalAsset& asset) {
 std::string opal_info_text(const nlohmann::json& d) {
     const nlohmann::json& c = d["constants"];
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
-<<<<<<< HEAD
     std::string text = size_text(d);
     text += fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
-=======
-    std::string text = size_text(d) + fmt::format("grids       {}\n", join(d["grids"].get<std::vector<std::string>>()));
->>>>>>> wt-assets
     text += fmt::format("grains      {}{}\n", d["grains"].get<std::uint64_t>(),
                         d["mean_grain_diameter_mm"].is_null()
                             ? std::string()

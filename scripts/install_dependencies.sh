@@ -7,12 +7,8 @@ packages="
   git ca-certificates g++ cmake ninja-build ccache pkg-config
   libopenvdb-dev libnanovdb-dev libopenvdb-tools python3-openvdb libboost-dev libboost-iostreams-dev libblosc-dev
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev
-<<<<<<< HEAD
-  libopenimageio-dev libopenexr-dev libtbb-dev libembree-dev libassimp-dev
-  libplplot-dev plplot-driver-cairo
-=======
   libopenimageio-dev libopenexr-dev libpng-dev libfreetype-dev libtbb-dev libembree-dev libassimp-dev
->>>>>>> wt-assets
+  libplplot-dev plplot-driver-cairo
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgtest-dev
   fonts-dejavu-core
 "
