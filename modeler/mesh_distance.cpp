@@ -8,12 +8,6 @@
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Simple_cartesian.h>
 
-#include <openvdb/math/Proximity.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
 #include <optional>
 
 #include "modeler/cgal_surface.h"
@@ -30,9 +24,6 @@ using FastKernel = CGAL::Simple_cartesian<double>;
 using Triangles = std::vector<FastKernel::Triangle_3>;
 using DistanceTree =
     CGAL::AABB_tree<CGAL::AABB_traits<FastKernel, CGAL::AABB_triangle_primitive<FastKernel, Triangles::const_iterator>>>;
-
-/// Up to so many triangles are compared one by one.
-constexpr std::size_t few_triangles = 64;
 
 Surface to_surface(const TriangleMesh& mesh) {
     Surface surface;
@@ -53,10 +44,6 @@ Triangles to_triangles(const TriangleMesh& mesh) {
 }
 
 FastKernel::Point_3 to_fast(const openvdb::Vec3d& p) {
-    return {p.x(), p.y(), p.z()};
-}
-
-openvdb::Vec3d to_vec3d(const FastKernel::Point_3& p) {
     return {p.x(), p.y(), p.z()};
 }
 
@@ -86,31 +73,13 @@ MeshDistance::MeshDistance(const TriangleMesh& solid) : search_(std::make_unique
 MeshDistance::~MeshDistance() = default;
 
 openvdb::Vec3d MeshDistance::nearest_point_mm(const openvdb::Vec3d& point_mm) const {
-    return to_vec3d(search_->distance_tree.closest_point(to_fast(point_mm)));
+    const auto nearest = search_->distance_tree.closest_point(to_fast(point_mm));
+    return {nearest.x(), nearest.y(), nearest.z()};
 }
 
-void MeshDistance::distances_mm(const openvdb::Vec3d& centre_mm, double radius_mm, const std::vector<openvdb::Vec3d>& points_mm,
-                                std::vector<double>& distances_mm) const {
-    distances_mm.assign(points_mm.size(), std::numeric_limits<double>::infinity());
-    const openvdb::Vec3d nearest_mm = nearest_point_mm(centre_mm);
-    const double reach_mm = ((nearest_mm - centre_mm).length() + 2.0 * radius_mm) * (1.0 + 1.0e-9);
-    std::vector<Triangles::const_iterator> near;
-    search_->distance_tree.all_intersected_primitives(FastKernel::Sphere_3(to_fast(centre_mm), reach_mm * reach_mm),
-                                                      std::back_inserter(near));
-    if (near.size() > few_triangles) {
-        for (std::size_t n = 0; n < points_mm.size(); ++n)
-            distances_mm[n] = std::sqrt(search_->distance_tree.squared_distance(to_fast(points_mm[n]), to_fast(nearest_mm)));
-        return;
-    }
-    for (const auto& triangle : near) {
-        const openvdb::Vec3d a = to_vec3d(triangle->vertex(0)), b = to_vec3d(triangle->vertex(1)),
-                             c = to_vec3d(triangle->vertex(2));
-        for (std::size_t n = 0; n < points_mm.size(); ++n) {
-            openvdb::Vec3d barycentric;
-            const openvdb::Vec3d closest_mm = openvdb::math::closestPointOnTriangleToPoint(a, b, c, points_mm[n], barycentric);
-            distances_mm[n] = std::min(distances_mm[n], (closest_mm - points_mm[n]).length());
-        }
-    }
+openvdb::Vec3d MeshDistance::nearest_point_mm(const openvdb::Vec3d& point_mm, const openvdb::Vec3d& on_surface_mm) const {
+    const auto nearest = search_->distance_tree.closest_point(to_fast(point_mm), to_fast(on_surface_mm));
+    return {nearest.x(), nearest.y(), nearest.z()};
 }
 
 double MeshDistance::signed_distance_mm(const openvdb::Vec3d& point_mm) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "modeler/triangle_mesh.h"
 
@@ -19,11 +18,8 @@ class MeshDistance {
     double signed_distance_mm(const openvdb::Vec3d& point_mm) const;
     /// The place on the mesh that is nearest to the point.
     openvdb::Vec3d nearest_point_mm(const openvdb::Vec3d& point_mm) const;
-    /// The distances (without signs) of points that all lie within `radius_mm` of `centre_mm`: of the nearest triangle to the
-    /// centre, at distance d, follows that only triangles within d + 2 radius of the centre can be nearest to one of them, so
-    /// where these are few the tree is searched once for all the points.
-    void distances_mm(const openvdb::Vec3d& centre_mm, double radius_mm, const std::vector<openvdb::Vec3d>& points_mm,
-                      std::vector<double>& distances_mm) const;
+    /// The same, sooner found from a place on the mesh that is known to be near.
+    openvdb::Vec3d nearest_point_mm(const openvdb::Vec3d& point_mm, const openvdb::Vec3d& on_surface_mm) const;
     bool contains(const openvdb::Vec3d& point_mm) const;
 
   private:

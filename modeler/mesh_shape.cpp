@@ -7,9 +7,9 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "formats/command.h"
-#include "modeler/block_tree.h"
 #include "modeler/level_set.h"
 #include "modeler/mesh_distance.h"
 #include "modeler/mesh_file.h"
@@ -17,8 +17,6 @@
 
 namespace opal {
 namespace {
-
-using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 
 /// Voxels by which the band is made wider at first, so that no voxel of the band itself is missed.
 constexpr float spare_width = 1.0f;
@@ -59,36 +57,26 @@ class MeshShape final : public Shape {
     /// a neighbour, which may be the second nearest: off by up to a tenth of a voxel near edges. Distances, and signs next to the
     /// surface, are computed anew, and what the spare width holds beyond the band is dropped.
     void make_exact(openvdb::FloatTree& tree, double voxel_size_mm) const {
+        const double band_mm = level_set_half_width * voxel_size_mm;
         openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
-        leaves.foreach ([&](FloatLeaf& leaf, std::size_t) {
+        leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
             if (interrupt_requested()) return;
-            for (int octant = 0; octant < 8; ++octant)
-                make_exact(leaf, VoxelBlock{leaf.origin(), leaf_size}.child(octant), voxel_size_mm);
+            std::optional<openvdb::Vec3d> nearest_mm;
+            for (auto value = leaf.beginValueOn(); value; ++value) {
+                const openvdb::Vec3d point_mm = value.getCoord().asVec3d() * voxel_size_mm;
+                // What is nearest to the voxel before is near to this one.
+                nearest_mm =
+                    nearest_mm ? distance_.nearest_point_mm(point_mm, *nearest_mm) : distance_.nearest_point_mm(point_mm);
+                const double distance_mm = (*nearest_mm - point_mm).length();
+                const bool inside = distance_mm < uncertain_sign * voxel_size_mm ? distance_.contains(point_mm) : *value < 0.0f;
+                const double stored_mm = std::min(distance_mm, band_mm);
+                value.setValue(static_cast<float>(inside ? -stored_mm : stored_mm));
+                if (distance_mm >= band_mm) value.setValueOff();
+            }
         });
         throw_if_interrupted();
-        openvdb::tools::changeLevelSetBackground(tree, static_cast<float>(level_set_half_width * voxel_size_mm));
+        openvdb::tools::changeLevelSetBackground(tree, static_cast<float>(band_mm));
         openvdb::tools::pruneLevelSet(tree);
-    }
-
-    void make_exact(FloatLeaf& leaf, const VoxelBlock& block, double voxel_size_mm) const {
-        std::vector<openvdb::Coord> voxels;
-        std::vector<openvdb::Vec3d> points_mm;
-        for (const openvdb::Coord& voxel : block.box()) {
-            if (!leaf.isValueOn(voxel)) continue;
-            voxels.push_back(voxel);
-            points_mm.push_back(voxel.asVec3d() * voxel_size_mm);
-        }
-        if (voxels.empty()) return;
-        std::vector<double> distances_mm;
-        distance_.distances_mm(block.centre_mm(voxel_size_mm), block.half_diagonal_mm(voxel_size_mm), points_mm, distances_mm);
-        const double band_mm = level_set_half_width * voxel_size_mm;
-        for (std::size_t n = 0; n < voxels.size(); ++n) {
-            const bool inside = distances_mm[n] < uncertain_sign * voxel_size_mm ? distance_.contains(points_mm[n])
-                                                                                 : leaf.getValue(voxels[n]) < 0.0f;
-            const double stored_mm = std::min(distances_mm[n], band_mm);
-            leaf.setValueOnly(voxels[n], static_cast<float>(inside ? -stored_mm : stored_mm));
-            if (distances_mm[n] >= band_mm) leaf.setValueOff(voxels[n]);
-        }
     }
 
     TriangleMesh solid_;
