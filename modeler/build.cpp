@@ -92,6 +92,17 @@ OpalConstants constants_of(const Recipe& recipe) {
     return constants;
 }
 
+/// What the asset takes over from the recipe as it stands.
+void describe_origin(const Recipe& recipe, OpalAsset& asset) {
+    asset.constants = constants_of(recipe);
+    asset.tessellation = recipe.grains.tessellation;
+    asset.boundary_noise = recipe.grains.boundary_noise;
+    asset.seed = recipe.grains.seed;
+    asset.recipe_toml = recipe_to_toml(recipe);
+    asset.program_version = version_report()["opal"].get<std::string>();
+    asset.schema_version = opal_schema_version;
+}
+
 void describe_sites(const SiteSet& sites, BuildReport& report) {
     report.shape_volume_mm3 = sites.shape_volume_mm3;
     report.shortest_site_distance_mm = sites.shortest_distance_mm;
@@ -150,13 +161,7 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     BuildReport& report = built.report;
     StageRunner stages(report, listener);
 
-    asset.constants = constants_of(recipe);
-    asset.tessellation = recipe.grains.tessellation;
-    asset.boundary_noise = recipe.grains.boundary_noise;
-    asset.seed = recipe.grains.seed;
-    asset.recipe_toml = recipe_to_toml(recipe);
-    asset.program_version = version_report()["opal"].get<std::string>();
-    asset.schema_version = opal_schema_version;
+    describe_origin(recipe, asset);
 
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
