@@ -65,6 +65,17 @@ OpalConstants constants_of(const Recipe& recipe) {
     return constants;
 }
 
+/// What the asset takes over from the recipe as it stands.
+void describe_origin(const Recipe& recipe, OpalAsset& asset) {
+    asset.constants = constants_of(recipe);
+    asset.tessellation = recipe.grains.tessellation;
+    asset.boundary_noise = recipe.grains.boundary_noise;
+    asset.seed = recipe.grains.seed;
+    asset.recipe_toml = recipe_to_toml(recipe);
+    asset.program_version = version_report()["opal"].get<std::string>();
+    asset.schema_version = opal_schema_version;
+}
+
 void describe_sites(const SiteSet& sites, BuildReport& report) {
     report.shape_volume_mm3 = sites.shape_volume_mm3;
     report.shortest_site_distance_mm = sites.shortest_distance_mm;
@@ -123,18 +134,12 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     BuildReport& report = built.report;
     StageRunner stages(report, listener);
 
-    asset.program_version = version_report()["opal"].get<std::string>();
-    asset.schema_version = opal_schema_version;
 
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
     if (scene_fit)
         report.scene_needs =
             fit_to_scene(recipe, scene_fit->scene, scene_fit->output, shape->bounds_mm(), scene_fit->accepted_error_pixels);
-    asset.constants = constants_of(recipe);
-    asset.seed = recipe.grains.seed;
-    asset.tessellation = recipe.grains.tessellation;
-    asset.boundary_noise = recipe.grains.boundary_noise;
-    asset.recipe_toml = recipe_to_toml(recipe);
+    describe_origin(recipe, asset);
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
     SiteNetwork network = make_site_network(recipe, *shape, stages);
