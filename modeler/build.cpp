@@ -9,6 +9,7 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/report.h"
+#include "modeler/hidden_sites.h"
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
 #include "modeler/neighbour_graph.h"
@@ -164,7 +165,7 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     describe_sites(sites, report);
     weigh(recipe, sites, *shape, stages, report, asset);
     const std::vector<char> hidden =
-        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, sites.spacing_mm(), asset.tessellation); });
+        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, asset.tessellation); });
 
     const NeighbourGraph graph = stages.run("neighbour_graph", [&] {
         return recipe.grains.sintering.graph == SinteringGraph::delaunay
