@@ -13,7 +13,6 @@
 
 #include "formats/error.h"
 #include "modeler/point_grid.h"
-#include "modeler/tessellation_metric.h"
 #include "modeler/weight_field.h"
 
 namespace opal {
@@ -117,31 +116,6 @@ openvdb::FloatGrid::Ptr make_weight_grid(const SiteSet& sites, const GrainsRecip
     });
     openvdb::tools::pruneInactive(grid->tree());
     return grid;
-}
-
-std::vector<char> find_hidden_sites(const std::vector<Site>& sites, double spacing_mm, TessellationKind tessellation) {
-    std::vector<openvdb::Vec3d> positions_mm(sites.size());
-    double largest_weight_mm = -std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < sites.size(); ++n) {
-        positions_mm[n] = sites[n].position_mm;
-        largest_weight_mm = std::max(largest_weight_mm, static_cast<double>(sites[n].weight_mm));
-    }
-    const PointGrid grid(positions_mm, spacing_mm);
-    std::vector<char> hidden(sites.size(), 0);
-    with_metric(tessellation, [&](auto metric) {
-        using Metric = decltype(metric);
-        tbb::parallel_for(std::size_t(0), sites.size(), [&](std::size_t n) {
-            const auto hides = [&](std::size_t other, double) {
-                return other != n && Metric::hides(sites[other], sites[n], positions_mm[other] - positions_mm[n], other < n);
-            };
-            // No site farther away than its possible lead can hide this one, the first factor covers rounding; with factors for
-            // weights, none but those in the same place.
-            const double lead_mm = largest_weight_mm - static_cast<double>(sites[n].weight_mm);
-            const double reach_mm = Metric::uniform_slope ? lead_mm * (1.0 + 1.0e-12) : 0.0;
-            hidden[n] = grid.any_within(positions_mm[n], reach_mm, hides) ? 1 : 0;
-        });
-    });
-    return hidden;
 }
 
 }  // namespace opal

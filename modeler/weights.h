@@ -33,10 +33,4 @@ WeighedSites weigh_sites(const SiteSet& sites, const GrainsRecipe& recipe, const
 openvdb::FloatGrid::Ptr make_weight_grid(const SiteSet& sites, const GrainsRecipe& recipe, const Shape& shape,
                                          double weight_scale);
 
-/// Marks (1) the sites that own nothing in the tessellation. Additive: i is hidden by j where w_j - w_i >= |p_i - p_j|, in the
-/// Manhattan metric by the same with its distance; with factors, by a smaller one in the same place. Of equal sites in one place
-/// the first owns.
-std::vector<char> find_hidden_sites(const std::vector<Site>& sites, double spacing_mm,
-                                    TessellationKind tessellation = TessellationKind::additive);
-
 }  // namespace opal

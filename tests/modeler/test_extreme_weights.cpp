@@ -5,7 +5,7 @@
 #include <set>
 
 #include "labelling_test_tools.h"
-#include "modeler/weights.h"
+#include "modeler/hidden_sites.h"
 
 namespace opal {
 namespace {
@@ -40,7 +40,7 @@ std::set<std::int32_t> labels_in_sphere(const std::vector<Site>& sites, Tessella
 }
 
 std::size_t hidden_count(const std::vector<Site>& sites, TessellationKind kind) {
-    const std::vector<char> hidden = find_hidden_sites(sites, 1.0, kind);
+    const std::vector<char> hidden = find_hidden_sites(sites, kind);
     return std::size_t(std::count(hidden.begin(), hidden.end(), 1));
 }
 
@@ -79,7 +79,7 @@ TEST(ExtremeWeights, FarApart) {
     const openvdb::BBoxd box(openvdb::Vec3d(-2.0, -2.0, 0.0), openvdb::Vec3d(2.0, 2.0, 4.0));
     for (const TessellationKind kind : {TessellationKind::additive, TessellationKind::manhattan}) {
         const std::vector<Site> sites = random_sites(box, 500, 50.0, 3);
-        const std::vector<char> hidden = find_hidden_sites(sites, 0.5, kind);
+        const std::vector<char> hidden = find_hidden_sites(sites, kind);
         EXPECT_GT(std::count(hidden.begin(), hidden.end(), 1), 450);
         EXPECT_LT(std::count(hidden.begin(), hidden.end(), 1), 500);
         for (const std::int32_t label : labels_in_sphere(sites, kind)) EXPECT_EQ(hidden[std::size_t(label) - 1], 0);
@@ -122,35 +122,57 @@ TEST(DegenerateSites, Duplicates) {
         EXPECT_EQ(labels_in_sphere(sites, kind), (std::set<std::int32_t>{1}));
         sites[700].weight_mm = kind == TessellationKind::multiplicative ? 0.9f : 1.1f;
         EXPECT_EQ(hidden_count(sites, kind), 999u);
-        EXPECT_EQ(find_hidden_sites(sites, 1.0, kind)[700], 0);
+        EXPECT_EQ(find_hidden_sites(sites, kind)[700], 0);
         EXPECT_EQ(labels_in_sphere(sites, kind), (std::set<std::int32_t>{701}));
     }
 }
 
-/// A million sites in 64^3 voxels: every voxel has its own owner or nearly so, and the search stays local.
+/// A million sites of which a part lies in the shape, four to a voxel there: nearly every voxel has an owner of its own. Strong
+/// weights hide almost all sites in about the same time.
 TEST(ExtremeCounts, AMillionSites) {
-    const auto shape = shape_of(ShapeKind::box, {6.4, 6.4, 6.4});
+    const auto shape = shape_of(ShapeKind::box, {2.4, 2.4, 2.4});
     const auto level_set = shape->level_set(0.1);
-    const std::vector<Site> sites = random_sites(shape->bounds_mm(), 1'000'000, 0.01, 3);
-    const std::vector<char> hidden = find_hidden_sites(sites, 0.064);
+    std::vector<Site> sites = random_sites({openvdb::Vec3d(-3.2, -3.2, -2.0), openvdb::Vec3d(3.2, 3.2, 4.4)}, 1'000'000, 0.01, 3);
+    const std::vector<char> hidden = find_hidden_sites(sites);
     std::vector<std::int32_t> labels = one_label_each(sites);
     for (std::size_t n = 0; n < sites.size(); ++n)
         if (hidden[n] != 0) labels[n] = 0;
     const auto grid = label_voxels(sites, labels, *level_set);
-    EXPECT_GE(grid->activeVoxelCount(), 63u * 63u * 63u);
+    EXPECT_EQ(grid->activeVoxelCount(), 23u * 23u * 23u);
     std::set<std::int32_t> seen;
     for (auto value = grid->cbeginValueOn(); value; ++value) seen.insert(*value);
-    EXPECT_GT(seen.size(), 150'000u);
-    for (std::uint64_t n = 0; n < 50; ++n) {
+    EXPECT_GT(seen.size(), 11'000u);
+    for (std::uint64_t n = 0; n < 30; ++n) {
         const openvdb::Coord voxel =
-            openvdb::Coord::round(random_point({openvdb::Vec3d(-30.0, -30.0, 2.0), openvdb::Vec3d(30.0, 30.0, 62.0)}, 8, n));
+            openvdb::Coord::round(random_point({openvdb::Vec3d(-11.0, -11.0, 1.0), openvdb::Vec3d(11.0, 11.0, 23.0)}, 8, n));
         ASSERT_EQ(grid->tree().getValue(voxel),
                   testing_tools::searched_owner(voxel.asVec3d() * 0.1, sites, labels, TessellationKind::additive));
     }
+
+    // Weights a hundred times the spacing, at random, then growing evenly by half a millimetre per millimetre, which
+    // hides nobody.
+    for (Site& site : sites) site.weight_mm *= 1000.0f;
+    const std::vector<char> mostly_hidden = find_hidden_sites(sites);
+    EXPECT_GT(std::count(mostly_hidden.begin(), mostly_hidden.end(), 1), 900'000);
+    EXPECT_LT(std::count(mostly_hidden.begin(), mostly_hidden.end(), 1), 1'000'000);
+    for (Site& site : sites) site.weight_mm = float(0.5 * site.position_mm.x());
+    const std::vector<char> none_hidden = find_hidden_sites(sites);
+    EXPECT_EQ(std::count(none_hidden.begin(), none_hidden.end(), 1), 0);
+}
+
+/// Of a shape smaller than its voxels, the voxels whose centres it happens to hold are labelled.
+TEST(ExtremeSizes, AShapeSmallerThanAVoxel) {
+    const auto level_set = shape_of(ShapeKind::sphere, {1.0, 1.0, 1.0})->level_set(0.5);
+    const std::vector<Site> sites = sites_at({{0.1, 0.0, 0.5}, {-0.1, 0.0, 0.5}});
+    const auto grid = label_voxels(sites, {1, 2}, *level_set);
+    EXPECT_EQ(grid->activeVoxelCount(), 1u);
+    EXPECT_EQ(grid->tree().getValue({0, 0, 1}), 1);
+    const auto missed = label_voxels(sites, {1, 2}, *shape_of(ShapeKind::sphere, {1.0, 1.0, 1.0})->level_set(3.0));
+    EXPECT_EQ(missed->activeVoxelCount(), 0u);
 }
 
 /// From a micrometre to a kilometre the labels are those of a full search.
-TEST(ExtremeSizes, LabelsAreExact) {
+TEST(ExtremeSizes, LabelsAreExactAtAnyScale) {
     for (const double size_mm : {0.001, 1.0, 1.0e6})
         for (const TessellationKind kind : metrics) {
             const auto shape = shape_of(ShapeKind::ellipsoid, {size_mm, 0.8 * size_mm, 0.6 * size_mm});

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "modeler/hidden_sites.h"
 #include "modeler/labelling.h"
 #include "modeler/sites.h"
 #include "modeler/weights.h"
@@ -55,7 +56,7 @@ std::map<NeighbourPair, int> voxel_faces(const std::vector<Site>& sites, const S
 
 void expect_the_labelling_s_neighbours(const std::vector<Site>& sites, const Shape& shape) {
     const double spacing = spacing_of(shape, sites.size());
-    const std::vector<char> hidden = find_hidden_sites(sites, spacing);
+    const std::vector<char> hidden = find_hidden_sites(sites);
     const NeighbourGraph graph = apollonius_graph(sites, hidden, shape, spacing);
     ASSERT_TRUE(std::is_sorted(graph.begin(), graph.end()));
     const std::map<NeighbourPair, int> faces = voxel_faces(sites, shape, spacing / 40.0);
@@ -136,7 +137,7 @@ TEST(ApolloniusGraph, DoesNotDependOnThreads) {
     const auto shape = ellipsoid({6.0, 5.0, 4.0});
     const std::vector<Site> sites = sites_inside(*shape, 500, 0.1, 2);
     const double spacing = spacing_of(*shape, sites.size());
-    const std::vector<char> hidden = find_hidden_sites(sites, spacing);
+    const std::vector<char> hidden = find_hidden_sites(sites);
     const auto build = [&] { return apollonius_graph(sites, hidden, *shape, spacing); };
     EXPECT_EQ(testing_tools::with_threads(1, build), testing_tools::with_threads(2, build));
 }

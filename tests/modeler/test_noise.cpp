@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "modeler/boundary_noise.h"
 #include "modeler/gradient_noise.h"

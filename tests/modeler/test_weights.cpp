@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/hidden_sites.h"
 #include "modeler/weight_field.h"
 #include "modeler_test_tools.h"
 
@@ -50,7 +51,7 @@ TEST(Weights, NoisesKeepTheConditionOfVisibleSites) {
         EXPECT_LE(most - least, weighed.shortest_mm());
         EXPECT_GT(most - least, 0.3 * weighed.shortest_mm());
         EXPECT_EQ(weighed.weighed.weight_scale, 1.0);
-        const std::vector<char> hidden = find_hidden_sites(weighed.weighed.sites, weighed.sites.spacing_mm());
+        const std::vector<char> hidden = find_hidden_sites(weighed.weighed.sites);
         EXPECT_EQ(std::count(hidden.begin(), hidden.end(), 1), 0);
     }
 }
@@ -171,7 +172,7 @@ TEST(Weights, AreLimitedUnlessToldOtherwise) {
     EXPECT_LT(largest, limited.shortest_mm());
     EXPECT_GT(largest, 0.9999 * limited.shortest_mm());
     const auto hidden = [](const Weighed& weighed) {
-        const std::vector<char> marks = find_hidden_sites(weighed.weighed.sites, weighed.sites.spacing_mm());
+        const std::vector<char> marks = find_hidden_sites(weighed.weighed.sites);
         return std::count(marks.begin(), marks.end(), 1);
     };
     EXPECT_EQ(hidden(limited), 0);
@@ -242,7 +243,7 @@ TEST(HiddenSites, EqualASearchThroughAllPairs) {
     const openvdb::BBoxd box(openvdb::Vec3d(0.0), openvdb::Vec3d(10.0));
     for (const double spread : {0.3, 1.0, 5.0}) {
         const std::vector<Site> sites = random_sites(box, 600, spread, 4);
-        const std::vector<char> hidden = find_hidden_sites(sites, 1.2);
+        const std::vector<char> hidden = find_hidden_sites(sites);
         for (std::size_t i = 0; i < sites.size(); ++i) {
             const bool expected = std::any_of(sites.begin(), sites.end(), [&](const Site& other) {
                 return &other != &sites[i] && double(other.weight_mm) - double(sites[i].weight_mm) >=
@@ -255,7 +256,7 @@ TEST(HiddenSites, EqualASearchThroughAllPairs) {
 
 TEST(HiddenSites, OfTheManhattanMetricEqualASearchThroughAllPairs) {
     const std::vector<Site> sites = random_sites({openvdb::Vec3d(0.0), openvdb::Vec3d(10.0)}, 600, 1.0, 4);
-    const std::vector<char> hidden = find_hidden_sites(sites, 1.2, TessellationKind::manhattan);
+    const std::vector<char> hidden = find_hidden_sites(sites, TessellationKind::manhattan);
     std::size_t count = 0;
     for (std::size_t i = 0; i < sites.size(); ++i) {
         const bool expected = std::any_of(sites.begin(), sites.end(), [&](const Site& other) {
@@ -274,17 +275,17 @@ TEST(HiddenSites, FactorsHideOnlyInTheSamePlace) {
     std::vector<Site> sites(4);
     for (std::size_t n = 0; n < 4; ++n) sites[n].weight_mm = float(n + 1);
     sites[3].position_mm = {1.0e-9, 0.0, 0.0};
-    EXPECT_EQ(find_hidden_sites(sites, 1.0, TessellationKind::multiplicative), (std::vector<char>{0, 1, 1, 0}));
+    EXPECT_EQ(find_hidden_sites(sites, TessellationKind::multiplicative), (std::vector<char>{0, 1, 1, 0}));
     sites[2].weight_mm = 0.5f;
     sites[1].weight_mm = 0.5f;
-    EXPECT_EQ(find_hidden_sites(sites, 1.0, TessellationKind::multiplicative), (std::vector<char>{1, 0, 1, 0}));
+    EXPECT_EQ(find_hidden_sites(sites, TessellationKind::multiplicative), (std::vector<char>{1, 0, 1, 0}));
 }
 
 TEST(HiddenSites, OfTwinsTheFirstOwns) {
     std::vector<Site> sites(3);
     sites[2].position_mm = {2.0, 0.0, 0.0};
     sites[2].weight_mm = -2.0f;  // exactly on the limit: owns a ray, which is nothing
-    EXPECT_EQ(find_hidden_sites(sites, 1.0), (std::vector<char>{0, 1, 1}));
+    EXPECT_EQ(find_hidden_sites(sites), (std::vector<char>{0, 1, 1}));
 }
 
 }  // namespace
