@@ -9,12 +9,8 @@
 #include "formats/error.h"
 #include "formats/field_summary.h"
 #include "formats/report.h"
-<<<<<<< HEAD
 #include "modeler/base_color_fields.h"
 #include "modeler/grain_growth.h"
-=======
-#include "modeler/hidden_sites.h"
->>>>>>> wt-labels
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
 #include "modeler/shape.h"
@@ -138,7 +134,6 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     BuildReport& report = built.report;
     StageRunner stages(report, listener);
 
-
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
     if (scene_fit)
         report.scene_needs =
@@ -146,7 +141,6 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     describe_origin(recipe, asset);
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
-<<<<<<< HEAD
     SiteNetwork network = make_site_network(recipe, *shape, stages);
     for (const std::string& warning : network.site_set.warnings) stages.warn(warning);
     describe_sites(network.site_set, report);
@@ -156,23 +150,6 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     report.weight_scale = network.weight_scale;
     asset.sites = std::move(network.sites);
     asset.weight = network.weight_grid;
-=======
-    const SiteSet sites = stages.run(
-        "sites", [&] { return sample_sites(*shape, static_cast<std::size_t>(recipe.grains.num_sites), recipe.grains.seed); });
-    describe_sites(sites, report);
-    weigh(recipe, sites, *shape, stages, report, asset);
-    const std::vector<char> hidden =
-        stages.run("hidden_sites", [&] { return find_hidden_sites(asset.sites, asset.tessellation); });
-
-    const NeighbourGraph graph = stages.run("neighbour_graph", [&] {
-        return recipe.grains.sintering.graph == SinteringGraph::delaunay
-                   ? delaunay_graph(asset.sites, hidden)
-                   : apollonius_graph(asset.sites, hidden, *shape, sites.spacing_mm());
-    });
-    const Sintering sintering =
-        stages.run("sintering", [&] { return sinter(graph, hidden, recipe.grains.sintering, recipe.grains.seed); });
-    describe_sintering(graph, hidden, sintering, stages, report);
->>>>>>> wt-labels
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
 
     asset.bezier_patches = shape->bezier_patches();

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "modeler/labelling.h"
+#include "modeler/hidden_sites.h"
 #include "modeler/weights.h"
 
 namespace opal {
@@ -54,9 +54,7 @@ SiteNetwork make_site_network(const Recipe& recipe, const Shape& shape, StageRun
     SiteNetwork network;
     network.site_set = stages.run("sites", [&] { return sample_sites(shape, recipe.grains); });
     weigh(recipe, shape, network, stages);
-    network.hidden = stages.run("hidden_sites", [&] {
-        return find_hidden_sites(network.sites, network.site_set.spacing_mm(), recipe.grains.tessellation);
-    });
+    network.hidden = stages.run("hidden_sites", [&] { return find_hidden_sites(network.sites, recipe.grains.tessellation); });
     network.graph = stages.run("neighbour_graph", [&] { return make_graph(recipe, shape, network); });
     return network;
 }
