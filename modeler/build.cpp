@@ -122,6 +122,31 @@ bool has_fields(const BaseColorRecipe& color) {
            color.sigma_s_mie_field.kind != FieldKind::constant;
 }
 
+/// The stages level_set, labelling and fields, as far as the recipe's output asks for them.
+void add_voxels(const Recipe& recipe, const Shape& shape, double voxel_size_mm, StageRunner& stages, BuildReport& report,
+                OpalAsset& asset) {
+    asset.shape = stages.run("level_set", [&] { return shape.level_set(voxel_size_mm); });
+    std::vector<std::int32_t> grain_of_site;
+    for (const Site& site : asset.sites) grain_of_site.push_back(site.grain);
+    const auto label = [&](const openvdb::FloatGrid& level_set) {
+        return label_voxels(asset.sites, grain_of_site, level_set, {asset.tessellation, asset.boundary_noise, asset.seed});
+    };
+    if (recipe.output.has(OutputGrid::grain_id)) {
+        asset.grain_id = stages.run("labelling", [&] { return label(*asset.shape); });
+        require_voxels(*asset.grain_id, shape.bounds_mm());
+        describe_grid(*asset.grain_id, report);
+    }
+    if (!has_fields(recipe.base_color)) return;
+    if (!recipe.output.has(OutputGrid::fields)) {
+        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
+        return;
+    }
+    stages.run("fields", [&] {
+        add_base_color_fields(recipe.base_color, shape, label, asset);
+        return varying_coefficients(asset).size();
+    });
+}
+
 }  // namespace
 
 BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, const std::optional<SceneFit>& scene_fit) {
@@ -151,28 +176,8 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     asset.sites = std::move(network.sites);
     asset.weight = network.weight_grid;
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
-
     asset.bezier_patches = shape->bezier_patches();
-    if (has_fields(recipe.base_color) && !recipe.output.has(OutputGrid::fields))
-        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
-    if (needs_voxels(recipe.output)) {
-        asset.shape = stages.run("level_set", [&] { return shape->level_set(voxel_size_mm); });
-        const auto label = [&](const openvdb::FloatGrid& level_set) {
-            return label_voxels(asset.sites, sintering.grain_of_site, level_set,
-                                {asset.tessellation, asset.boundary_noise, asset.seed});
-        };
-        if (recipe.output.has(OutputGrid::grain_id)) {
-            asset.grain_id = stages.run("labelling", [&] { return label(*asset.shape); });
-            require_voxels(*asset.grain_id, shape->bounds_mm());
-            describe_grid(*asset.grain_id, report);
-        }
-        if (recipe.output.has(OutputGrid::fields) && has_fields(recipe.base_color))
-            stages.run("fields", [&] {
-                add_base_color_fields(recipe.base_color, *shape, label, asset);
-                return varying_coefficients(asset).size();
-            });
-    }
-
+    if (needs_voxels(recipe.output)) add_voxels(recipe, *shape, voxel_size_mm, stages, report, asset);
     asset.grain_orientations = growth.grain_orientations;
     report.grain_statistics = stages.run("grain_statistics", [&] { return grain_statistics(asset, network.graph); });
     return built;

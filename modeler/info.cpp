@@ -124,20 +124,6 @@ std::string tessellation_text(const nlohmann::json& tessellation) {
     return fmt::format("cells       {}{}\n", tessellation["kind"].get<std::string>(), noise);
 }
 
-std::vector<std::string> grids_in(const OpalAsset& asset) {
-    const std::pair<const char*, bool> grids[] = {{grid_names::grain_id, asset.grain_id != nullptr},
-                                                  {grid_names::shape, asset.shape != nullptr},
-                                                  {grid_names::weight, asset.weight != nullptr},
-                                                  {grid_names::sigma_a_scale, asset.sigma_a_scale != nullptr},
-                                                  {grid_names::sigma_s_rayleigh, asset.sigma_s_rayleigh_400nm != nullptr},
-                                                  {grid_names::sigma_s_mie, asset.sigma_s_mie != nullptr},
-                                                  {grid_names::sites, !asset.sites.empty()}};
-    std::vector<std::string> names;
-    for (const auto& [name, there] : grids)
-        if (there) names.push_back(name);
-    return names;
-}
-
 }  // namespace
 
 nlohmann::json describe_opal(const OpalAsset& asset) {
