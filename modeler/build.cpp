@@ -169,7 +169,7 @@ BuiltOpal build_opal(const Recipe& recipe, const BuildListener& listener) {
     const NeighbourGraph graph = stages.run("neighbour_graph", [&] {
         return recipe.grains.sintering.graph == SinteringGraph::delaunay
                    ? delaunay_graph(asset.sites, hidden)
-                   : apollonius_graph(asset.sites, hidden, *shape, sites.spacing_mm());
+                   : apollonius_graph(asset.sites, hidden, *shape, sites.spacing_mm(), asset.tessellation);
     });
     const Sintering sintering =
         stages.run("sintering", [&] { return sinter(graph, hidden, recipe.grains.sintering, recipe.grains.seed); });
