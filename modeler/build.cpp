@@ -136,11 +136,7 @@ void add_voxels(const Recipe& recipe, const Shape& shape, double voxel_size_mm, 
         require_voxels(*asset.grain_id, shape.bounds_mm());
         describe_grid(*asset.grain_id, report);
     }
-    if (!has_fields(recipe.base_color)) return;
-    if (!recipe.output.has(OutputGrid::fields)) {
-        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
-        return;
-    }
+    if (!has_fields(recipe.base_color) || !recipe.output.has(OutputGrid::fields)) return;
     stages.run("fields", [&] {
         add_base_color_fields(recipe.base_color, shape, label, asset);
         return varying_coefficients(asset).size();
@@ -177,6 +173,8 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     asset.weight = network.weight_grid;
     for (std::size_t n = 0; n < asset.sites.size(); ++n) asset.sites[n].grain = sintering.grain_of_site[n];
     asset.bezier_patches = shape->bezier_patches();
+    if (has_fields(recipe.base_color) && !recipe.output.has(OutputGrid::fields))
+        stages.warn("base_color has fields, but output.grids leaves them out: the file holds the constant coefficients alone");
     if (needs_voxels(recipe.output)) add_voxels(recipe, *shape, voxel_size_mm, stages, report, asset);
     asset.grain_orientations = growth.grain_orientations;
     report.grain_statistics = stages.run("grain_statistics", [&] { return grain_statistics(asset, network.graph); });

@@ -21,19 +21,20 @@ struct NeighbourPair {
 /// Ascending, without repetition; hidden sites have no neighbours.
 using NeighbourGraph = std::vector<NeighbourPair>;
 
-/// Smallest block of the search, as a part of the sites' mean spacing: measured, halving it finds less than one more pair in a
+/// Smallest cube of the search, as a part of the sites' mean spacing: measured, halving it finds less than one more pair in a
 /// thousand.
 inline constexpr double smallest_face_search = 1.0 / 128.0;
 
-/// The true neighbours of the additively weighted diagram inside the shape: pairs of cells that share a piece of face there.
+/// The true neighbours of the weighted diagram inside the shape: pairs of cells that share a piece of face there, in the metric
+/// of `kind`, any boundary noise disregarded.
 ///
-/// Blocks of space are divided with candidate lists that shrink on the way (SiteCulling), as long as they hold a pair of
-/// candidates not known to meet, down to `smallest_face_search` spacings. A pair is taken only on proof: a point of the block,
-/// inside the shape, where both sites are equally near and every other one is farther. So no pair is ever wrong, and every pair
-/// is found whose face holds, inside the shape, a disk of radius twice the smallest block; smaller faces may be missed. The
-/// result does not depend on threads. Throws Interrupted on Ctrl-C.
+/// A pair is taken only on proof: a point inside the shape where both sites are equally near (to 1e-9 spacings) and every other
+/// one is farther. So no pair is ever wrong. Every pair is found whose face holds, inside the shape, a disk of radius twice
+/// `smallest_face_search` spacings; smaller faces may be missed. Cells of additive weights are settled one by one where possible
+/// (RadialCell); what that leaves, and the other metrics, by dividing space (FaceSearch). The result does not depend on threads.
+/// Throws Interrupted on Ctrl-C.
 NeighbourGraph apollonius_graph(const std::vector<Site>& sites, const std::vector<char>& hidden, const Shape& shape,
-                                double spacing_mm);
+                                double spacing_mm, TessellationKind kind = TessellationKind::additive);
 
 /// Edges of the Delaunay tetrahedrization of the visible sites, weights and shape disregarded (CGAL, exact predicates). Includes
 /// the long edges along the sites' convex hull. Sites on a line or in a plane are joined as their Delaunay triangulation there

@@ -21,7 +21,7 @@ NeighbourGraph make_graph(const Recipe& recipe, const Shape& shape, const SiteNe
         case SinteringGraph::apollonius:
             break;
     }
-    return apollonius_graph(network.sites, network.hidden, shape, network.site_set.spacing_mm());
+    return apollonius_graph(network.sites, network.hidden, shape, network.site_set.spacing_mm(), recipe.grains.tessellation);
 }
 
 /// Gives the sites their weights, and the field behind them where the recipe asks for it.

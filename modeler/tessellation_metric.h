@@ -43,6 +43,16 @@ struct TessellationMetric {
                         point_mm.z() - site.position_mm.z(), static_cast<double>(site.weight_mm));
     }
 
+    /// Gradient of delta; 0 at the site itself.
+    static openvdb::Vec3d gradient(const openvdb::Vec3d& point_mm, const Site& site) {
+        const openvdb::Vec3d offset_mm = point_mm - site.position_mm;
+        if constexpr (kind == TessellationKind::manhattan) {
+            const auto sign = [](double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; };
+            return {sign(offset_mm.x()), sign(offset_mm.y()), sign(offset_mm.z())};
+        }
+        return offset_mm.unitSafe() * slope(site);
+    }
+
     /// Largest change of delta per Euclidean distance.
     static double slope(const Site& site) {
         if constexpr (kind == TessellationKind::multiplicative) return static_cast<double>(site.weight_mm);

@@ -49,9 +49,9 @@ class HoudiniPoints : public testing::Test {
 TEST_F(HoudiniPoints, AttributesHaveTheDocumentedTypes) {
     ASSERT_TRUE(sites_);
     EXPECT_EQ(openvdb::points::pointCount(sites_->tree()), 3u);
-    const std::map<std::string, std::string> documented = {{"P", "vec3s"},      {"id", "int32"},     {"grain", "int32"},
-                                                           {"weight", "float"}, {"orient", "quats"}, {"pscale", "float"},
-                                                           {"Cd", "vec3s"}};
+    const std::map<std::string, std::string> documented = {{"P", "vec3s"},      {"id", "int32"},         {"grain", "int32"},
+                                                           {"weight", "float"}, {"orient", "quats"},     {"pscale", "float"},
+                                                           {"Cd", "vec3s"},     {"position_mm", "vec3d"}};
     const auto& descriptor = sites_->tree().cbeginLeaf()->attributeSet().descriptor();
     EXPECT_EQ(descriptor.map().size(), documented.size());
     for (const auto& [name, type] : documented) {

@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <string>
@@ -15,6 +16,11 @@
 #include "formats/random.h"
 
 namespace opal::testing_tools {
+
+/// A name of its own for each process: tests run beside each other.
+inline std::string temporary_file(const std::string& name) {
+    return ::testing::TempDir() + "opal_" + std::to_string(::getpid()) + "_" + name;
+}
 
 /// Uniform in the box; a pure function of (seed, index).
 inline openvdb::Vec3d random_point(const openvdb::BBoxd& box, std::uint64_t seed, std::uint64_t index) {
@@ -69,7 +75,7 @@ bool same_grids(const Grid& a, const Grid& b) {
 
 /// A file in the tests' temporary folder.
 inline std::string write_test_file(const std::string& name, const std::string& content) {
-    const std::string path = ::testing::TempDir() + "opal_" + name;
+    const std::string path = temporary_file(name);
     std::ofstream(path, std::ios::binary) << content;
     return path;
 }

@@ -147,7 +147,7 @@ class UserFields : public testing::Test {
     static std::string write(const openvdb::FloatGrid::Ptr& grid) {
         initialize_openvdb();
         grid->setName("dirt");
-        const std::string path = testing::TempDir() + "opal_user_field.vdb";
+        const std::string path = testing_tools::temporary_file("user_field.vdb");
         openvdb::io::File file(path);
         file.write({grid});
         file.close();
@@ -185,7 +185,7 @@ TEST_F(UserFields, BadOnesAreNamed) {
     negative->tree().setValueOn({1, 2, 3}, -0.1f);
     EXPECT_NE(input_error_of([&] {
                   build_with(field(write(negative)));
-              }).find("opal_user_field.vdb: grid 'dirt': voxel [1, 2, 3] holds -0.1; allowed: factors from 0"),
+              }).find("user_field.vdb: grid 'dirt': voxel [1, 2, 3] holds -0.1; allowed: factors from 0"),
               std::string::npos);
     const auto broken = openvdb::FloatGrid::create(0.0f);
     broken->tree().setValueOn({4, 5, 6}, std::nanf(""));
@@ -234,7 +234,7 @@ TEST(BuildOutput, SitesAloneTakeNoVoxelsWhateverTheirSize) {
 
 TEST(BuildOutput, SitesThatWereReadBackGiveTheSameLabels) {
     const OpalAsset asset = build_with("");
-    const std::string path = testing::TempDir() + "opal_read_back.vdb";
+    const std::string path = testing_tools::temporary_file("read_back.vdb");
     write_opal_asset(asset, path);
     std::vector<std::string> notices;
     const OpalAsset back = read_opal_asset(path, {}, notices);

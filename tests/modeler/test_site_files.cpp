@@ -68,7 +68,7 @@ TEST(SiteFiles, PlyIsReadWithAndWithoutFaces) {
 TEST(SiteFiles, OurOwnOpalKeepsTheOrderOfItsSites) {
     const std::string recipe = "[shape]\nkind = \"sphere\"\n[grains]\nnum_sites = 500\nvoxel_size_mm = 0.25\n";
     const BuiltOpal built = build_opal(parse_recipe(recipe, "ball.toml", {}), [](const std::string&) {});
-    const std::string file = ::testing::TempDir() + "opal_own_sites.vdb";
+    const std::string file = testing_tools::temporary_file("own_sites.vdb");
     write_opal_asset(built.asset, file);
     const std::vector<Vec3d> read = read_site_file(file, 1.0);
     ASSERT_EQ(read.size(), built.asset.sites.size());
@@ -89,7 +89,7 @@ TEST(SiteFiles, ForeignPointsAreReadByTheirTransform) {
     transform->postTranslate({0.1, 0.2, 0.3});
     const auto grid = points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(positions, *transform);
     grid->setName("cloud");
-    const std::string file = ::testing::TempDir() + "opal_foreign_points.vdb";
+    const std::string file = testing_tools::temporary_file("foreign_points.vdb");
     openvdb::io::File(file).write({grid});
     std::vector<Vec3d> read = read_site_file(file, 2.0);
     ASSERT_EQ(read.size(), 2u);
@@ -99,7 +99,7 @@ TEST(SiteFiles, ForeignPointsAreReadByTheirTransform) {
 
     const auto floats = openvdb::FloatGrid::create();
     floats->setName("density");
-    const std::string no_points = ::testing::TempDir() + "opal_no_points.vdb";
+    const std::string no_points = testing_tools::temporary_file("no_points.vdb");
     openvdb::io::File(no_points).write({floats});
     EXPECT_NE(input_error_of([&] { read_site_file(no_points, 1.0); }).find("no grid of points (found: density)"),
               std::string::npos);

@@ -110,7 +110,7 @@ std::string linear_grid_file() {
     }
     const auto other = openvdb::FloatGrid::create(3.0f);
     other->setName("other");
-    const std::string path = ::testing::TempDir() + "opal_weight_grid.vdb";
+    const std::string path = testing_tools::temporary_file("weight_grid.vdb");
     openvdb::io::File(path).write(openvdb::GridPtrVec{grid, other});
     return path;
 }
