@@ -12,7 +12,6 @@
 #include "modeler/cgal_version.h"
 
 namespace opal {
-
 namespace {
 
 std::string describe_distributions(const GrainStatistics& statistics) {
@@ -27,6 +26,14 @@ std::string describe_distributions(const GrainStatistics& statistics) {
         text += fmt::format("lattices {:.1f} degrees apart on average between {} pairs of neighbours (random: 40.7)\n",
                             statistics.misorientation_deg.mean, statistics.neighbouring_grains);
     return text;
+}
+
+/// Of the grids in memory, points aside.
+std::uint64_t grid_memory_bytes(const OpalAsset& asset) {
+    std::uint64_t sum = asset.grain_id ? asset.grain_id->memUsage() : 0;
+    for (const auto& grid : {asset.shape, asset.weight, asset.sigma_a_scale, asset.sigma_s_rayleigh_400nm, asset.sigma_s_mie})
+        if (grid) sum += grid->memUsage();
+    return sum;
 }
 
 }  // namespace
@@ -61,6 +68,7 @@ nlohmann::json report_to_json(const BuildReport& report, const OpalAsset& asset)
     nlohmann::json json;
     json["seconds"] = seconds;
     json["peak_memory_bytes"] = peak_memory_bytes();
+    json["grid_memory_bytes"] = grid_memory_bytes(asset);
     json["counts"] = {{"sites", asset.sites.size()},
                       {"hidden_sites", report.hidden_sites},
                       {"bonds", report.bonds},

@@ -9,7 +9,7 @@ packages="
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev
   libopenimageio-dev libopenexr-dev libpng-dev libfreetype-dev libtbb-dev libembree-dev libassimp-dev
   libplplot-dev plplot-driver-cairo
-  libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgtest-dev
+  libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgtest-dev libnanoflann-dev
   fonts-dejavu-core
 "
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "formats/atomic_file.h"
+#include "formats/command.h"
+#include "formats/error.h"
+#include "formats/opal_asset.h"
+#include "modeler_bench.h"
+
+namespace {
+
+struct BenchArguments {
+    std::string folder;
+    bool quick = false;
+};
+
+int run_modeler(const BenchArguments& arguments) {
+    opal::initialize_openvdb();
+    const std::filesystem::path folder(arguments.folder);
+    const std::vector<opal::BenchRow> rows = opal::bench_modeler(folder / "work", arguments.quick);
+    std::filesystem::remove_all(folder / "work");
+    opal::AtomicFile file(folder / "modeler.csv");
+    std::ofstream csv(file.temporary_path());
+    csv << "what,value,unit\n";
+    for (const opal::BenchRow& row : rows) csv << fmt::format("\"{}\",{:.6g},{}\n", row.what, row.value, row.unit);
+    csv.close();
+    if (!csv) throw opal::SystemError(fmt::format("{}: writing failed", (folder / "modeler.csv").string()));
+    file.commit();
+    return 0;
+}
+
+int run_bench(int argc, char** argv) {
+    CLI::App app("Measures opal's programs: speed and memory as ratios within one run.", "opal-bench");
+    app.require_subcommand(1);
+    BenchArguments arguments;
+    CLI::App* const modeler = app.add_subcommand("modeler", "opal-model: labelling, builds, memory (some minutes)");
+    modeler->add_option("-o,--output", arguments.folder, "folder for modeler.csv")->required()->type_name("DIR");
+    modeler->add_flag("--quick", arguments.quick, "an eighth of the voxels (about a minute)");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& request) {
+        return app.exit(request);
+    } catch (const CLI::ParseError& error) {
+        throw opal::InputError(fmt::format("{} (see opal-bench --help)", error.what()));
+    }
+    return run_modeler(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return opal::run_command("opal-bench", [&] { return run_bench(argc, argv); });
+}
