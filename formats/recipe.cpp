@@ -147,6 +147,9 @@ SinteringRecipe read_sintering(TomlSection section, const GrainsRecipe& grains) 
             section.number("misorientation_deg", sintering.misorientation_deg, NumberRange{0.0, 180.0, true});
     if (sintering.preference == BondPreference::area && sintering.graph != SinteringGraph::apollonius)
         section.fail("preference", "contact areas are known to graph = \"apollonius\" alone");
+    if (sintering.preference == BondPreference::area && grains.tessellation != TessellationKind::additive &&
+        grains.tessellation != TessellationKind::voronoi)
+        section.fail("preference", "contact areas are known to the additive and voronoi tessellations alone");
     section.finish();
     return sintering;
 }

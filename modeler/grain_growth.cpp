@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "modeler/grain_growth.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
-#include <cmath>
-
-#include "formats/error.h"
 #include "formats/units.h"
 
 namespace opal {
 namespace {
 
+/// Faces too small to be measured still are contacts.
+constexpr double smallest_area_weight = 1.0e-6;
+
 /// Contact areas over their mean, so that p keeps its meaning for the average bond.
-std::vector<double> area_weights(const Recipe&, const SiteNetwork&) {
-    throw InputError(
-        "grains.sintering.preference = \"area\": contact areas are not measured yet; use \"none\" or \"misorientation\"");
+std::vector<double> area_weights(std::vector<double> areas_mm2) {
+    const double sum_mm2 = std::accumulate(areas_mm2.begin(), areas_mm2.end(), 0.0);
+    const double mean_mm2 = sum_mm2 / static_cast<double>(std::max<std::size_t>(1, areas_mm2.size()));
+    for (double& area : areas_mm2) area = mean_mm2 > 0.0 ? std::max(area / mean_mm2, smallest_area_weight) : 1.0;
+    return areas_mm2;
 }
 
 }  // namespace
@@ -30,7 +34,7 @@ std::vector<double> bond_weights(const Recipe& recipe, const SiteNetwork& networ
             return misorientation_weights(network.graph, of_sites,
                                           units::rad_from_deg(recipe.grains.sintering.misorientation_deg));
         case BondPreference::area:
-            return area_weights(recipe, network);
+            return area_weights(network.contact_areas_mm2);
         case BondPreference::none:
             break;
     }

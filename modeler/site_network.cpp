@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "modeler/contact_areas.h"
 #include "modeler/hidden_sites.h"
 #include "modeler/weights.h"
 
@@ -56,6 +57,9 @@ SiteNetwork make_site_network(const Recipe& recipe, const Shape& shape, StageRun
     weigh(recipe, shape, network, stages);
     network.hidden = stages.run("hidden_sites", [&] { return find_hidden_sites(network.sites, recipe.grains.tessellation); });
     network.graph = stages.run("neighbour_graph", [&] { return make_graph(recipe, shape, network); });
+    if (recipe.grains.sintering.preference == BondPreference::area)
+        network.contact_areas_mm2 =
+            stages.run("contact_areas", [&] { return contact_areas_mm2(network.graph, network.sites, shape); });
     return network;
 }
 

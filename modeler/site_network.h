@@ -20,13 +20,14 @@ struct SiteNetwork {
     openvdb::FloatGrid::Ptr weight_grid;  ///< the field behind them, where output.grids asks for it
     std::vector<char> hidden;             ///< per site, 1 where it owns nothing
     NeighbourGraph graph;
+    std::vector<double> contact_areas_mm2;  ///< of the graph's pairs, where sintering prefers large contacts; else empty
 
     std::size_t num_visible() const;
     /// Neighbours per visible site; 0 where none is visible.
     double mean_degree() const;
 };
 
-/// The stages sites, weights, hidden_sites and neighbour_graph of a recipe.
+/// The stages sites, weights, hidden_sites, neighbour_graph and, where they are needed, contact_areas of a recipe.
 SiteNetwork make_site_network(const Recipe& recipe, const Shape& shape, StageRunner& stages);
 
 }  // namespace opal

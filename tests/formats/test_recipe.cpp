@@ -110,6 +110,8 @@ TEST(Recipe, KeysThatContradictEachOther) {
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nsintering = { preference = \"misorientation\" }\n"
                                        "orientation = { kind = \"table\", file = \"q.csv\" }\n"),
                        "a table orients finished grains");
+    EXPECT_INPUT_ERROR(parse(minimal + "[grains]\ntessellation = \"manhattan\"\nsintering = { preference = \"area\" }\n"),
+                       "additive and voronoi tessellations alone");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nweight = []\n"), "a sum needs at least one term");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nweight = { kind = \"csv\" }\n"), "a weight of kind csv needs a file");
     EXPECT_INPUT_ERROR(parse(minimal + "[grains]\nweight = { kind = \"linear\", direction = [0, 0, 0] }\n"), "points nowhere");

@@ -139,7 +139,7 @@ TEST(Weights, CsvHoldsOneNumberPerSite) {
     const Weighed weighed = weigh(from(text), 20);
     for (std::size_t n = 0; n < 20; ++n) EXPECT_FLOAT_EQ(weighed.weighed.sites[n].weight_mm, float(0.02 * double(n)));
     EXPECT_NE(error_of(from(text + "0.5\n")).find("21 values for 20 sites"), std::string::npos);
-    EXPECT_NE(error_of(from("1\n2\nx\n")).find("opal_weights.csv:3: expected one finite number, found 'x'"), std::string::npos);
+    EXPECT_NE(error_of(from("1\n2\nx\n")).find("weights.csv:3: expected one finite number, found 'x'"), std::string::npos);
     EXPECT_NE(error_of(from("1\n2, 3\n")).find("weights.csv:2: expected one finite number"), std::string::npos);
     EXPECT_NE(error_of(from("1 2\n")).find("weights.csv:1: expected one finite number"), std::string::npos);
     EXPECT_NE(error_of(from("nan\n")).find("weights.csv:1: expected one finite number"), std::string::npos);
