@@ -23,6 +23,10 @@ endif()
 if(OPAL_SANITIZE)
   target_compile_options(opal_compile_options INTERFACE -fsanitize=${OPAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(opal_compile_options INTERFACE -fsanitize=${OPAL_SANITIZE})
+  if(OPAL_SANITIZE MATCHES "undefined")
+    # These cost a third of the time to compile OpenVDB's templates; what they catch ends in a crash that is told all the same.
+    target_compile_options(opal_compile_options INTERFACE -fno-sanitize=vptr,null,alignment,object-size)
+  endif()
 endif()
 
 # opal_expose_headers(TARGET ROOM): makes "ROOM/file.h" includable for TARGET and for whoever links it, and for nobody else. The

@@ -37,12 +37,19 @@ class OwnerQuery {
         weights_count_ = weights_count;
     }
 
-    std::size_t owner(const openvdb::Vec3d& place_mm) const {
+    /// Sites found and their squared distances, kept from query to query.
+    struct Found {
         std::vector<std::size_t> index;
         std::vector<double> squared_mm2;
+    };
+
+    std::size_t owner(const openvdb::Vec3d& place_mm, Found& buffers) const {
+        auto& [index, squared_mm2] = buffers;
         for (std::size_t count = first_count_;; count *= 2) {
-            index.resize(count);
-            squared_mm2.resize(count);
+            if (index.size() < count) {
+                index.resize(count);
+                squared_mm2.resize(count);
+            }
             const std::size_t found = tree_.knnSearch(place_mm.asPointer(), count, index.data(), squared_mm2.data());
             if (!weights_count_) return index[0];
             std::size_t best = 0;
@@ -78,8 +85,9 @@ KdTreeLabels label_by_kd_tree(const std::vector<Site>& sites, const std::vector<
     const Stopwatch watch;
     tbb::parallel_for(std::size_t(0), (leaves.leafCount() + stride - 1) / stride, [&](std::size_t n) {
         std::uint64_t asked = 0, wrong = 0;
+        OwnerQuery::Found buffers;
         for (auto value = leaves.leaf(n * stride).cbeginValueOn(); value; ++value, ++asked)
-            wrong += label_of_site[query.owner(labels.indexToWorld(value.getCoord()))] != *value ? 1 : 0;
+            wrong += label_of_site[query.owner(labels.indexToWorld(value.getCoord()), buffers)] != *value ? 1 : 0;
         voxels += asked;
         differences += wrong;
     });
