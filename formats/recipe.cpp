@@ -45,7 +45,7 @@ void read_bezier(TomlSection& section, ShapeRecipe& shape) {
     } else {
         shape.size_mm = section.vector3("size_mm", shape.size_mm, NumberRange::positive(1.0e7), true);
         shape.girdle_mm =
-            section.number("girdle_mm", std::round(0.25e6 * shape.size_mm[2]) * 1.0e-6, NumberRange{0.0, shape.size_mm[2], true});
+            section.number("girdle_mm", std::round(0.25e6 * shape.size_mm[2]) / 1.0e6, NumberRange{0.0, shape.size_mm[2], true});
         if (shape.girdle_mm >= shape.size_mm[2]) section.fail("girdle_mm", "leaves no height for the dome above it");
     }
     shape.chord_error_mm = section.number("chord_error_mm", 0.0, NumberRange::from_zero(1.0e7));
@@ -70,7 +70,7 @@ ShapeRecipe read_shape(TomlSection section) {
         if (shape.kind == ShapeKind::cabochon) {
             const double smallest = std::min({shape.size_mm[0], shape.size_mm[1], shape.size_mm[2]});
             shape.girdle_mm =
-                section.number("girdle_mm", std::round(0.15e6 * smallest) * 1.0e-6, NumberRange{0.0, 0.9 * smallest, true});
+                section.number("girdle_mm", std::round(0.15e6 * smallest) / 1.0e6, NumberRange{0.0, 0.9 * smallest, true});
         }
     }
     section.finish();
