@@ -159,6 +159,7 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
     if (scene_fit)
         report.scene_needs =
             fit_to_scene(recipe, scene_fit->scene, scene_fit->output, shape->bounds_mm(), scene_fit->accepted_error_pixels);
+    built.output = recipe.output;
     describe_origin(recipe, asset);
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 

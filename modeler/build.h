@@ -14,6 +14,7 @@ namespace opal {
 struct BuiltOpal {
     OpalAsset asset;
     BuildReport report;
+    OutputRecipe output;  ///< what of it to write: the recipe's, or what is left of that for a scene
 };
 
 /// For which picture an opal is modelled, where it is modelled for one.

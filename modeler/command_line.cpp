@@ -80,7 +80,7 @@ int run_build(const BuildArguments& arguments) {
     throw_if_interrupted();
     say("write");
     const Stopwatch watch;
-    write_opal_asset(built.asset, output, {recipe.output.grids, recipe.output.for_blender});
+    write_opal_asset(built.asset, output, {built.output.grids, built.output.for_blender});
     built.report.stages.push_back({"write", watch.seconds()});
     if (!arguments.report_file.empty()) write_report(arguments.report_file, report_to_json(built.report, built.asset));
     fmt::print("{}file     {}, {:.2f} MB\n", report_summary(built.report, built.asset), output.string(),

@@ -100,11 +100,12 @@ TEST(SceneNeeds, WhichOpalIsMeant) {
 }
 
 TEST(SceneNeeds, TheBuildUsesAndReportsThem) {
-    const Recipe recipe = recipe_with();
+    const Recipe recipe = recipe_with("[output]\nfor_blender = true\n");
     const BuiltOpal built = build_opal(
         recipe, [](const std::string&) {}, SceneFit{scene_with(""), "gem.vdb", 4.0});
     ASSERT_TRUE(built.report.scene_needs.has_value());
     EXPECT_NEAR(built.asset.grain_id->voxelSize().x(), 4.0 * 2.0 / std::sqrt(3.0) * footprint_at(48.0), 1.0e-12);
+    EXPECT_FALSE(built.output.for_blender);
     EXPECT_NE(built.asset.recipe_toml.find("voxel_size_mm = 0.19"), std::string::npos) << built.asset.recipe_toml;
 }
 
