@@ -28,7 +28,8 @@ Enum read_choice(TomlSection& section, const std::string& key, Enum fallback, co
 
 std::array<double, 3> read_direction(TomlSection& section, const std::string& key, const std::array<double, 3>& fallback) {
     const std::array<double, 3> direction = section.vector3(key, fallback, NumberRange::between(-1.0e9, 1.0e9));
-    if (direction == std::array<double, 3>{0.0, 0.0, 0.0}) section.fail(key, "a direction of length 0 points nowhere");
+    if (!(std::hypot(direction[0], direction[1], direction[2]) >= 1.0e-6))
+        section.fail(key, "a direction of length 0 points nowhere; allowed: lengths from 0.000001");
     return direction;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "formats/error.h"
+#include "formats/spectrum.h"
 #include "formats/units.h"
 
 namespace opal {
@@ -15,6 +16,8 @@ namespace {
 
 /// Half an 8-bit step of white.
 constexpr double invisible_change = 0.5 / 255.0;
+/// Along the longest side, as few as a recipe may ask for.
+constexpr double fewest_voxels = 4.0;
 /// Part of space that touching spheres fill in fcc packing.
 const double fcc_fill = units::pi / (3.0 * std::sqrt(2.0));
 
@@ -76,7 +79,7 @@ void drop_field(FieldRecipe& field, const std::string& name, double coefficient_
     if (field.kind == FieldKind::constant || field.kind == FieldKind::grid) return;
     const double change = 2.0 * field.contrast * coefficient_per_mm * longest_path_mm;
     if (change >= invisible_change) return;
-    needs.dropped.push_back(fmt::format("{}: changes transmission by {:.2g} at most", name, change));
+    needs.dropped.push_back(fmt::format("{}: changes transmission by {:.2g} at most along a straight path", name, change));
     field = {};
 }
 
@@ -84,7 +87,9 @@ void drop_what_does_not_show(Recipe& recipe, double longest_path_mm, SceneNeeds&
     BaseColorRecipe& color = recipe.base_color;
     // Rayleigh scattering is strongest at the short end of the visible range.
     const double rayleigh_at_360nm = std::pow(400.0 / 360.0, 4);
-    drop_field(color.sigma_a_field, "sigma_a_field", color.sigma_a_per_mm, longest_path_mm, needs);
+    const SampledSpectrum sigma_a_per_mm = absorber_spectrum(color.absorber, color.sigma_a_per_mm, color.sigma_a_reference_nm);
+    const double strongest_per_mm = *std::max_element(sigma_a_per_mm.value.begin(), sigma_a_per_mm.value.end());
+    drop_field(color.sigma_a_field, "sigma_a_field", strongest_per_mm, longest_path_mm, needs);
     drop_field(color.sigma_s_rayleigh_field, "sigma_s_rayleigh_field", color.sigma_s_rayleigh_400nm_per_mm * rayleigh_at_360nm,
                longest_path_mm, needs);
     drop_field(color.sigma_s_mie_field, "sigma_s_mie_field", color.sigma_s_mie_per_mm, longest_path_mm, needs);
@@ -104,14 +109,15 @@ SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std
                         const openvdb::BBoxd& bounds_mm, double accepted_error_pixels) {
     const ObjectDescription& opal = find_opal(scene, output);
     const openvdb::Vec3d extents_mm = bounds_mm.extents();
+    const double longest_mm = std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()});
     SceneNeeds needs;
-    needs.recipe_voxel_size_mm = recipe.resolution > 0
-                                     ? std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / recipe.resolution
-                                     : recipe.grains.voxel_size_mm;
+    needs.recipe_voxel_size_mm = recipe.resolution > 0 ? longest_mm / recipe.resolution : recipe.grains.voxel_size_mm;
     needs.pixel_footprint_mm = pixel_footprint_mm(scene, opal, bounds_mm);
     const double half_diagonal = 0.5 * std::sqrt(3.0);
     if (needs.pixel_footprint_mm > 0.0) {
-        needs.voxel_size_mm = accepted_error_pixels * needs.pixel_footprint_mm / half_diagonal;
+        // A gem of a few pixels still is a gem.
+        needs.voxel_size_mm =
+            std::min(accepted_error_pixels * needs.pixel_footprint_mm / half_diagonal, longest_mm / fewest_voxels);
         recipe.grains.voxel_size_mm = needs.voxel_size_mm;
         recipe.resolution = 0;
     } else {

@@ -25,11 +25,11 @@ struct SceneNeeds {
 };
 
 /// Fits `recipe` to a scene: a voxel size at which no grain boundary is off by more than `accepted_error_pixels` at the gem's
-/// nearest point, whatever the recipe said, and no field or display grid that the picture cannot show. A field is dropped where
-/// its variation along the longest straight path changes transmission by less than half an 8-bit step. `bounds_mm` is the
-/// shape's box, `output` the file that the scene's [[object]] of kind opal names (its only opal otherwise). A perspective camera
-/// in the gem's box has no nearest point: the recipe's resolution is kept and said to be. Throws InputError where no opal of the
-/// scene can be meant.
+/// nearest point, whatever the recipe said (but four voxels along the longest side), and no field or display grid that the
+/// picture cannot show. A field is dropped where its variation along the longest straight path changes transmission by less than
+/// half an 8-bit step. `bounds_mm` is the shape's box, `output` the file that the scene's [[object]] of kind opal names (its only
+/// opal otherwise). A perspective camera in the gem's box has no nearest point: the recipe's resolution is kept and said to be.
+/// Throws InputError where no opal of the scene can be meant.
 SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std::filesystem::path& output,
                         const openvdb::BBoxd& bounds_mm, double accepted_error_pixels);
 

@@ -21,6 +21,9 @@
 namespace opal {
 namespace {
 
+/// As far as the lengths of a recipe reach; squares of distances stay far from overflowing.
+constexpr double farthest_mm = 1.0e7;
+
 using openvdb::Vec3d;
 
 constexpr std::size_t max_sites = 50'000'000;
@@ -135,8 +138,9 @@ std::vector<Vec3d> read_site_file(const std::filesystem::path& file, double mm_p
             fmt::format("sites {}: holds {} points; at most {} are possible", file.string(), points.size(), max_sites));
     for (std::size_t n = 0; n < points.size(); ++n) {
         points[n] *= mm_per_unit;
-        if (!points[n].isFinite())
-            throw InputError(fmt::format("sites {}: point {} is not at finite coordinates", file.string(), n + 1));
+        if (!(std::max({std::abs(points[n].x()), std::abs(points[n].y()), std::abs(points[n].z())}) <= farthest_mm))
+            throw InputError(
+                fmt::format("sites {}: point {} lies beyond {:g} mm from the origin", file.string(), n + 1, farthest_mm));
     }
     return points;
 }

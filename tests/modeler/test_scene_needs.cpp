@@ -84,6 +84,20 @@ TEST(SceneNeeds, OnlyWhatCannotBeSeenIsDropped) {
     EXPECT_EQ(kept.base_color.sigma_a_field.kind, FieldKind::noise);
 }
 
+TEST(SceneNeeds, FieldsAreJudgedWhereTheAbsorberIsStrongest) {
+    // 0.0001 /mm at 630 nm, but many times as much at 360 nm.
+    Recipe recipe = recipe_with(
+        "[base_color]\nabsorber = \"iron-oxide\"\nsigma_a_reference_nm = 630\nsigma_a_per_mm = 1e-4\n"
+        "sigma_a_field = { kind = \"noise\", contrast = 0.5 }\n");
+    fit(recipe, scene_with(""));
+    EXPECT_EQ(recipe.base_color.sigma_a_field.kind, FieldKind::noise);
+}
+
+TEST(SceneNeeds, AFarGemKeepsFourVoxels) {
+    Recipe recipe = recipe_with();
+    EXPECT_EQ(fit(recipe, scene_with("translate_mm = [0, 1e5, 0]\n")).voxel_size_mm, 2.0);
+}
+
 TEST(SceneNeeds, WhichOpalIsMeant) {
     SceneDescription two = scene_with("");
     two.objects.push_back(two.objects.front());
