@@ -16,8 +16,9 @@
 namespace opal {
 
 /// Raised whenever a reader of the previous version could misread a file. Version 2 brought coefficients that vary, stacking
-/// faults and mosaic spread, which a reader of version 1 would leave out without a word; and files of sites alone.
-inline constexpr int opal_schema_version = 2;
+/// faults and mosaic spread, which a reader of version 1 would leave out without a word; and files of sites alone. Version 3
+/// brought indices that vary with the wavelength and scatterers other than Henyey-Greenstein's.
+inline constexpr int opal_schema_version = 3;
 
 namespace grid_names {
 inline constexpr const char* grain_id = "grain_id";
@@ -41,15 +42,20 @@ struct Site {
 /// Everything about an opal that does not vary from place to place.
 struct OpalConstants {
     double sphere_diameter_nm = 250.0;
-    double n_sphere = 1.45;
-    double n_medium = 1.333;
+    RefractiveIndex n_sphere = 1.45;
+    RefractiveIndex n_medium = 1.333;
     double coherence_length_um = 25.0;
     std::string absorber = "carbon";
     SampledSpectrum sigma_a_per_mm;  ///< absorption coefficient over the vacuum wavelength
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
-    double sigma_s_mie_per_mm = 0.0;
+    double sigma_s_mie_per_mm = 0.0;    ///< at 550 nm where sigma_s_mie_shape varies
+    SampledSpectrum sigma_s_mie_shape;  ///< over the wavelength, 1 at 550 nm; empty: the same at every wavelength
+    MiePhase mie_phase = MiePhase::henyey_greenstein;
     double mie_asymmetry = 0.8;
-    double stacking_fault_probability = 0.0;  ///< per layer
+    double draine_alpha = 1.0;
+    MieParticle mie_particle = MieParticle::vacancy;
+    double mie_particle_diameter_nm = 0.0;    ///< 0: as large as the crystal's spheres
+    double stacking_fault_probability = 0.0;  ///< per layer: 0 fcc, 0.5 random stacking, 1 hcp
     double mosaic_spread_deg = 0.0;           ///< standard deviation of lattice tilt inside a grain
 };
 

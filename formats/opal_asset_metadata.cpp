@@ -70,11 +70,43 @@ class MetadataReader {
     std::string file_;
 };
 
+/// An index: its value at the sodium line, and how it varies where it does.
+RefractiveIndex read_index(const MetadataReader& reader, const std::string& file, const char* key, const char* spectrum_key) {
+    const double constant = reader.number(key, 1.0, 4.0);
+    if (!reader.has(spectrum_key)) return constant;
+    try {
+        return RefractiveIndex::from_text(reader.text(spectrum_key));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: metadata '{}': {}", file, spectrum_key, error.what()));
+    }
+}
+
+template <typename Enum>
+Enum read_choice(const MetadataReader& reader, const std::string& file, const char* key, const recipe_names::Names& known) {
+    const std::string name = reader.text(key);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+        throw InputError(fmt::format("{}: metadata '{}': '{}' is not known; allowed: {}", file, key, name, join(known)));
+    return recipe_names::value<Enum>(known, name);
+}
+
+void read_scatterers(const MetadataReader& reader, const std::string& file, OpalConstants& constants) {
+    constants.mie_phase = read_choice<MiePhase>(reader, file, metadata_keys::mie_phase, recipe_names::mie_phases);
+    constants.draine_alpha = reader.number(metadata_keys::draine_alpha, 0.0, 1.0e3);
+    constants.mie_particle = read_choice<MieParticle>(reader, file, metadata_keys::mie_particle, recipe_names::mie_particles);
+    constants.mie_particle_diameter_nm = reader.number(metadata_keys::mie_particle_diameter_nm, 0.0, 1.0e4);
+    if (!reader.has(metadata_keys::sigma_s_mie_shape)) return;
+    try {
+        constants.sigma_s_mie_shape = spectrum_from_text(reader.text(metadata_keys::sigma_s_mie_shape));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: metadata '{}': {}", file, metadata_keys::sigma_s_mie_shape, error.what()));
+    }
+}
+
 OpalConstants read_constants(const MetadataReader& reader, const std::string& file, int version) {
     OpalConstants constants;
     constants.sphere_diameter_nm = reader.number(metadata_keys::sphere_diameter_nm, 50.0, 1000.0);
-    constants.n_sphere = reader.number(metadata_keys::n_sphere, 1.0, 4.0);
-    constants.n_medium = reader.number(metadata_keys::n_medium, 1.0, 4.0);
+    constants.n_sphere = read_index(reader, file, metadata_keys::n_sphere, metadata_keys::n_sphere_spectrum);
+    constants.n_medium = read_index(reader, file, metadata_keys::n_medium, metadata_keys::n_medium_spectrum);
     constants.coherence_length_um = reader.number(metadata_keys::coherence_length_um, 0.5, 1.0e4);
     constants.absorber = reader.text(metadata_keys::absorber);
     try {
@@ -89,6 +121,7 @@ OpalConstants read_constants(const MetadataReader& reader, const std::string& fi
         constants.stacking_fault_probability = reader.number(metadata_keys::stacking_fault_probability, 0.0, 1.0);
         constants.mosaic_spread_deg = reader.number(metadata_keys::mosaic_spread_deg, 0.0, 180.0);
     }
+    if (version >= 3) read_scatterers(reader, file, constants);
     return constants;
 }
 
@@ -102,12 +135,7 @@ void read_bezier_patches(const MetadataReader& reader, const std::string& file, 
 }
 
 void read_tessellation(const MetadataReader& reader, const std::string& file, OpalAsset& asset) {
-    const std::string name = reader.text(metadata_keys::tessellation);
-    const recipe_names::Names& known = recipe_names::tessellations;
-    if (std::find(known.begin(), known.end(), name) == known.end())
-        throw InputError(fmt::format("{}: metadata '{}': '{}' is not known; allowed: {}", file, metadata_keys::tessellation, name,
-                                     join(known)));
-    asset.tessellation = recipe_names::value<TessellationKind>(known, name);
+    asset.tessellation = read_choice<TessellationKind>(reader, file, metadata_keys::tessellation, recipe_names::tessellations);
     asset.boundary_noise.amplitude_mm = reader.number(metadata_keys::boundary_noise_amplitude_mm, 0.0, 1.0e7);
     asset.boundary_noise.scale_mm = reader.number(metadata_keys::boundary_noise_scale_mm, 1.0e-6, 1.0e7);
     asset.boundary_noise.octaves = reader.integer32(metadata_keys::boundary_noise_octaves);
@@ -150,14 +178,22 @@ openvdb::MetaMap opal_metadata(const OpalAsset& asset, bool with_sites) {
     metadata.insertMeta(metadata_keys::num_sites, openvdb::Int64Metadata(static_cast<std::int64_t>(asset.sites.size())));
     metadata.insertMeta(metadata_keys::num_grains, openvdb::Int64Metadata(static_cast<std::int64_t>(asset.num_grains())));
     number(metadata_keys::sphere_diameter_nm, constants.sphere_diameter_nm);
-    number(metadata_keys::n_sphere, constants.n_sphere);
-    number(metadata_keys::n_medium, constants.n_medium);
+    number(metadata_keys::n_sphere, constants.n_sphere.at(sodium_d_nm));
+    number(metadata_keys::n_medium, constants.n_medium.at(sodium_d_nm));
+    if (constants.n_sphere.varies()) text(metadata_keys::n_sphere_spectrum, constants.n_sphere.to_text());
+    if (constants.n_medium.varies()) text(metadata_keys::n_medium_spectrum, constants.n_medium.to_text());
     number(metadata_keys::coherence_length_um, constants.coherence_length_um);
     text(metadata_keys::absorber, constants.absorber);
     text(metadata_keys::sigma_a_per_mm, spectrum_to_text(constants.sigma_a_per_mm));
     number(metadata_keys::sigma_s_rayleigh, constants.sigma_s_rayleigh_400nm_per_mm);
     number(metadata_keys::sigma_s_mie, constants.sigma_s_mie_per_mm);
+    if (!constants.sigma_s_mie_shape.value.empty())
+        text(metadata_keys::sigma_s_mie_shape, spectrum_to_text(constants.sigma_s_mie_shape));
+    text(metadata_keys::mie_phase, recipe_names::name(recipe_names::mie_phases, constants.mie_phase));
     number(metadata_keys::mie_asymmetry, constants.mie_asymmetry);
+    number(metadata_keys::draine_alpha, constants.draine_alpha);
+    text(metadata_keys::mie_particle, recipe_names::name(recipe_names::mie_particles, constants.mie_particle));
+    number(metadata_keys::mie_particle_diameter_nm, constants.mie_particle_diameter_nm);
     number(metadata_keys::stacking_fault_probability, constants.stacking_fault_probability);
     number(metadata_keys::mosaic_spread_deg, constants.mosaic_spread_deg);
     text(metadata_keys::tessellation, recipe_names::name(recipe_names::tessellations, asset.tessellation));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/error.h"
 #include "formats/recipe_names.h"
 #include "formats/toml_reader.h"
 #include "formats/units.h"
@@ -17,7 +18,8 @@ constexpr std::int64_t max_sites = 50'000'000;
 const ExclusiveKeys exclusive_keys = {{"grains.voxel_size_mm", "grains.resolution"},
                                       {"grains.sintering.probability", "grains.sintering.grains"},
                                       {"grains.sintering.probability", "grains.sintering.mean_grain_mm"},
-                                      {"grains.sintering.grains", "grains.sintering.mean_grain_mm"}};
+                                      {"grains.sintering.grains", "grains.sintering.mean_grain_mm"},
+                                      {"base_color.sigma_s_mie_per_mm", "base_color.defect_concentration"}};
 
 namespace names = recipe_names;
 
@@ -194,12 +196,23 @@ GrainsRecipe read_grains(TomlSection section, int& resolution) {
     return grains;
 }
 
+RefractiveIndex read_index(TomlSection& section, const std::string& key, const RefractiveIndex& fallback) {
+    if (!section.is_text(key)) return section.number(key, fallback.at(sodium_d_nm), NumberRange::between(1.0, 4.0));
+    const std::string name = section.text(key, "");
+    if (name.ends_with(".csv")) return RefractiveIndex::from_csv(section.path(key));
+    try {
+        return RefractiveIndex::of_material(name);
+    } catch (const InputError& error) {
+        section.fail(key, error.what());
+    }
+}
+
 CrystalRecipe read_crystal(TomlSection section) {
     CrystalRecipe crystal;
     crystal.sphere_diameter_nm =
         section.number("sphere_diameter_nm", crystal.sphere_diameter_nm, NumberRange::between(50.0, 1000.0));
-    crystal.n_sphere = section.number("n_sphere", crystal.n_sphere, NumberRange::between(1.0, 4.0));
-    crystal.n_medium = section.number("n_medium", crystal.n_medium, NumberRange::between(1.0, 4.0));
+    crystal.n_sphere = read_index(section, "n_sphere", crystal.n_sphere);
+    crystal.n_medium = read_index(section, "n_medium", crystal.n_medium);
     crystal.coherence_length_um =
         section.number("coherence_length_um", crystal.coherence_length_um, NumberRange::between(0.5, 1.0e4));
     crystal.stacking_fault_probability = section.number("stacking_fault_probability", 0.0, NumberRange::between(0.0, 1.0));
@@ -237,6 +250,13 @@ BaseColorRecipe read_base_color(TomlSection section) {
                                                 NumberRange::between(units::wavelength_min_nm, units::wavelength_max_nm));
     color.sigma_s_rayleigh_400nm_per_mm = section.number("sigma_s_rayleigh_400nm_per_mm", 0.0, coefficient);
     color.sigma_s_mie_per_mm = section.number("sigma_s_mie_per_mm", 0.0, coefficient);
+    color.mie_phase = read_choice(section, "mie_phase", color.mie_phase, names::mie_phases);
+    color.draine_alpha = section.number("draine_alpha", color.draine_alpha, NumberRange::between(0.0, 1.0e3));
+    color.mie_particle = read_choice(section, "mie_particle", color.mie_particle, names::mie_particles);
+    color.mie_particle_diameter_nm = section.number("mie_particle_diameter_nm", 0.0, NumberRange::from_zero(1.0e4));
+    color.defect_concentration = section.number("defect_concentration", 0.0, NumberRange::between(0.0, 0.2));
+    if (color.defect_concentration > 0.0 && section.has("sigma_s_mie_per_mm"))
+        section.fail("defect_concentration", "sigma_s_mie_per_mm follows from it: give one of the two");
     color.mie_asymmetry = section.number("mie_asymmetry", color.mie_asymmetry, NumberRange::between(-0.99, 0.99));
     color.sigma_a_field = read_field(section.section("sigma_a_field"));
     color.sigma_s_rayleigh_field = read_field(section.section("sigma_s_rayleigh_field"));

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/refractive_index.h"
+
 namespace opal {
 
 enum class ShapeKind { ellipsoid, sphere, box, cabochon, mesh, bezier };
@@ -18,6 +20,8 @@ enum class WeightKind { none, perlin, simplex, linear, radial, distance, grid, c
 enum class SinteringGraph { apollonius, delaunay, lattice };
 enum class BondPreference { none, misorientation, area };
 enum class OrientationKind { uniform, fibre, table };
+enum class MiePhase { henyey_greenstein, draine, schlick, lorenz_mie };
+enum class MieParticle { vacancy, sphere };
 enum class FieldKind { constant, noise, layers, grains, grid };
 enum class OutputGrid { grain_id, shape, weight, fields, sites };
 
@@ -92,10 +96,10 @@ struct GrainsRecipe {
 
 struct CrystalRecipe {
     double sphere_diameter_nm = 250.0;
-    double n_sphere = 1.45;
-    double n_medium = 1.333;
+    RefractiveIndex n_sphere = 1.45;
+    RefractiveIndex n_medium = 1.333;
     double coherence_length_um = 25.0;
-    double stacking_fault_probability = 0.0;  ///< per layer
+    double stacking_fault_probability = 0.0;  ///< per layer: 0 fcc, 0.5 random stacking, 1 hcp
     double mosaic_spread_deg = 0.0;           ///< standard deviation of lattice tilt inside a grain
 };
 
@@ -117,7 +121,12 @@ struct BaseColorRecipe {
     double sigma_a_reference_nm = 550.0;
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
     double sigma_s_mie_per_mm = 0.0;
-    double mie_asymmetry = 0.8;  ///< Henyey-Greenstein g of the Mie-like part
+    MiePhase mie_phase = MiePhase::henyey_greenstein;
+    double mie_asymmetry = 0.8;                       ///< g of the Henyey-Greenstein, Draine and Schlick phase functions
+    double draine_alpha = 1.0;                        ///< Draine's second parameter
+    MieParticle mie_particle = MieParticle::vacancy;  ///< what scatters: a missing sphere or a sphere too many
+    double mie_particle_diameter_nm = 0.0;            ///< 0: as large as the crystal's spheres
+    double defect_concentration = 0.0;                ///< such particles per lattice site; above 0, sigma_s_mie follows from it
     FieldRecipe sigma_a_field;
     FieldRecipe sigma_s_rayleigh_field;
     FieldRecipe sigma_s_mie_field;

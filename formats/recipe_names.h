@@ -21,6 +21,8 @@ inline const Names weights = {"none", "perlin", "simplex", "linear", "radial", "
 inline const Names graphs = {"apollonius", "delaunay", "lattice"};
 inline const Names preferences = {"none", "misorientation", "area"};
 inline const Names orientations = {"uniform", "fibre", "table"};
+inline const Names mie_phases = {"henyey-greenstein", "draine", "schlick", "lorenz-mie"};
+inline const Names mie_particles = {"vacancy", "sphere"};
 inline const Names fields = {"constant", "noise", "layers", "grains", "grid"};
 inline const Names grids = {"grain_id", "shape", "weight", "fields", "sites"};
 

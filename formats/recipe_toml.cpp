@@ -29,6 +29,10 @@ std::string quoted_file(const std::filesystem::path& file) {
     return toml_quoted(file.filename().string());
 }
 
+std::string index_to_toml(const RefractiveIndex& index) {
+    return index.varies() ? quoted_file(index.name()) : real(index.at(sodium_d_nm));
+}
+
 std::string shape_to_toml(const ShapeRecipe& shape) {
     std::string text = fmt::format("[shape]\nkind = {}\n", quoted(names::shapes, shape.kind));
     if (shape.kind == ShapeKind::mesh)
@@ -123,10 +127,15 @@ std::string field_to_toml(const std::string& key, const FieldRecipe& field) {
 std::string base_color_to_toml(const BaseColorRecipe& color) {
     return fmt::format(
                "\n[base_color]\nabsorber = {}\nsigma_a_per_mm = {}\nsigma_a_reference_nm = {}\nsigma_s_rayleigh_400nm_per_mm = "
-               "{}\n"
-               "sigma_s_mie_per_mm = {}\nmie_asymmetry = {}\n",
+               "{}\n",
                quoted_file(color.absorber), real(color.sigma_a_per_mm), real(color.sigma_a_reference_nm),
-               real(color.sigma_s_rayleigh_400nm_per_mm), real(color.sigma_s_mie_per_mm), real(color.mie_asymmetry)) +
+               real(color.sigma_s_rayleigh_400nm_per_mm)) +
+           (color.defect_concentration > 0.0 ? fmt::format("defect_concentration = {}\n", real(color.defect_concentration))
+                                             : fmt::format("sigma_s_mie_per_mm = {}\n", real(color.sigma_s_mie_per_mm))) +
+           fmt::format(
+               "mie_phase = {}\nmie_asymmetry = {}\ndraine_alpha = {}\nmie_particle = {}\nmie_particle_diameter_nm = {}\n",
+               quoted(names::mie_phases, color.mie_phase), real(color.mie_asymmetry), real(color.draine_alpha),
+               quoted(names::mie_particles, color.mie_particle), real(color.mie_particle_diameter_nm)) +
            field_to_toml("sigma_a_field", color.sigma_a_field) +
            field_to_toml("sigma_s_rayleigh_field", color.sigma_s_rayleigh_field) +
            field_to_toml("sigma_s_mie_field", color.sigma_s_mie_field);
@@ -146,7 +155,7 @@ std::string recipe_to_toml(const Recipe& recipe) {
            fmt::format(
                "\n[crystal]\nsphere_diameter_nm = {}\nn_sphere = {}\nn_medium = {}\ncoherence_length_um = {}\n"
                "stacking_fault_probability = {}\nmosaic_spread_deg = {}\n",
-               real(crystal.sphere_diameter_nm), real(crystal.n_sphere), real(crystal.n_medium),
+               real(crystal.sphere_diameter_nm), index_to_toml(crystal.n_sphere), index_to_toml(crystal.n_medium),
                real(crystal.coherence_length_um), real(crystal.stacking_fault_probability), real(crystal.mosaic_spread_deg)) +
            base_color_to_toml(recipe.base_color) + output_to_toml(recipe.output);
 }

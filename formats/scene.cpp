@@ -16,7 +16,12 @@ const std::vector<std::string> sampler_names = {"stratified", "independent"};
 const std::vector<std::string> filter_names = {"tent", "box"};
 const std::vector<std::string> camera_names = {"perspective", "orthographic"};
 const std::vector<std::string> environment_names = {"studio", "constant", "file"};
-const std::vector<std::string> diffraction_names = {"two-beam", "none"};
+const std::vector<std::string> illuminant_names = {"D65", "A", "E", "blackbody", "led", "file"};
+const std::vector<std::string> white_names = {"D65", "A", "E"};
+const std::vector<std::string> upsampling_names = {"jakob-hanika", "smits", "basis"};
+const std::vector<std::string> diffraction_names = {"two-beam", "ewald-fresnel", "laue", "none"};
+const std::vector<std::string> dispersion_names = {"full", "bands", "none"};
+const std::vector<std::string> majorant_names = {"local", "global"};
 const std::vector<std::string> material_names = {"diffuse"};
 const std::vector<std::string> object_names = {"opal", "mesh", "plane", "sphere", "cylinder"};
 const std::vector<std::string> aov_names = {"object_id", "grain_id", "depth", "normal"};
@@ -68,7 +73,7 @@ FilmDescription read_film(TomlSection section) {
     film.spectral = section.boolean("spectral", film.spectral);
     film.aovs = section.choices("aovs", aov_names);
     film.exposure_ev = section.number("exposure_ev", film.exposure_ev, NumberRange::between(-40.0, 40.0));
-    section.choice("white", "D65", {"D65"});
+    film.white = enum_choice(section, "white", film.white, white_names);
     section.finish();
     return film;
 }
@@ -84,15 +89,35 @@ EnvironmentDescription read_environment(TomlSection section) {
         section.fail("file", "is used with kind = \"file\" only");
     environment.radiance = section.number("radiance", environment.radiance, NumberRange::from_zero(1.0e9));
     environment.rotate_deg = section.number("rotate_deg", 0.0, NumberRange::between(-3.6e4, 3.6e4));
+    environment.illuminant_file = section.path("illuminant_file");
+    environment.illuminant =
+        enum_choice(section, "illuminant", environment.illuminant_file.empty() ? IlluminantKind::d65 : IlluminantKind::file,
+                    illuminant_names);
+    if ((environment.illuminant == IlluminantKind::file) != !environment.illuminant_file.empty())
+        section.fail("illuminant_file", "and illuminant = \"file\" go together: a .csv with wavelength_nm and a relative power");
+    if (environment.illuminant == IlluminantKind::blackbody || environment.illuminant == IlluminantKind::led)
+        environment.temperature_k =
+            section.number("temperature_k", environment.temperature_k, NumberRange::between(1000.0, 25000.0));
     section.finish();
     return environment;
+}
+
+ColorDescription read_color(TomlSection section) {
+    ColorDescription color;
+    color.upsampling = enum_choice(section, "upsampling", color.upsampling, upsampling_names);
+    section.finish();
+    return color;
 }
 
 OpalDescription read_opal(TomlSection section) {
     OpalDescription opal;
     opal.diffraction = enum_choice(section, "diffraction", opal.diffraction, diffraction_names);
     section.choice("grains", "auto", {"auto", "voxels"});
-    opal.companions = static_cast<int>(section.integer("companions", opal.companions, 0, 3));
+    opal.ewald_tolerance = section.number("ewald_tolerance", opal.ewald_tolerance, NumberRange{0.0, 0.5, true});
+    opal.max_odds = section.number("max_odds", opal.max_odds, NumberRange::between(1.0, 1.0e6));
+    opal.dispersion = enum_choice(section, "dispersion", opal.dispersion, dispersion_names);
+    opal.majorants = enum_choice(section, "majorants", opal.majorants, majorant_names);
+    opal.companions = static_cast<int>(section.integer("companions", opal.companions, 0, 7));
     section.finish();
     return opal;
 }
@@ -143,6 +168,7 @@ SceneDescription read_document(const TomlDocument& document) {
     scene.render = read_render(root.section("render"));
     scene.camera = read_camera(root.section("camera"));
     scene.film = read_film(root.section("film"));
+    scene.color = read_color(root.section("color"));
     scene.environment = read_environment(root.section("environment"));
     scene.opal = read_opal(root.section("opal"));
     std::vector<std::string> names;
@@ -204,14 +230,23 @@ std::string scene_to_toml(const SceneDescription& scene) {
         "aperture_radius_mm = {}\nfocus_mm = {}\n",
         name(camera_names, camera.kind), vector_text(camera.position_mm), vector_text(camera.target_mm), vector_text(camera.up),
         camera.vertical_fov_deg, camera.view_height_mm, camera.aperture_radius_mm, camera.focus_mm);
-    text += fmt::format("\n[film]\nspectral = {}\naovs = [{}]\nexposure_ev = {}\nwhite = \"D65\"\n", scene.film.spectral,
+    text += fmt::format("\n[film]\nspectral = {}\naovs = [{}]\nexposure_ev = {}\nwhite = \"{}\"\n", scene.film.spectral,
                         scene.film.aovs.empty() ? "" : fmt::format("\"{}\"", fmt::join(scene.film.aovs, "\", \"")),
-                        scene.film.exposure_ev);
+                        scene.film.exposure_ev, name(white_names, scene.film.white));
+    text += fmt::format("\n[color]\nupsampling = \"{}\"\n", name(upsampling_names, scene.color.upsampling));
     text += fmt::format("\n[environment]\nkind = \"{}\"\n", name(environment_names, scene.environment.kind));
     if (!scene.environment.file.empty()) text += fmt::format("file = {}\n", toml_quoted(scene.environment.file.string()));
-    text += fmt::format("radiance = {}\nrotate_deg = {}\n", scene.environment.radiance, scene.environment.rotate_deg);
-    text += fmt::format("\n[opal]\ndiffraction = \"{}\"\ngrains = \"voxels\"\ncompanions = {}\n",
-                        name(diffraction_names, scene.opal.diffraction), scene.opal.companions);
+    text += fmt::format("radiance = {}\nrotate_deg = {}\nilluminant = \"{}\"\n", scene.environment.radiance,
+                        scene.environment.rotate_deg, name(illuminant_names, scene.environment.illuminant));
+    if (!scene.environment.illuminant_file.empty())
+        text += fmt::format("illuminant_file = {}\n", toml_quoted(scene.environment.illuminant_file.string()));
+    if (scene.environment.illuminant == IlluminantKind::blackbody || scene.environment.illuminant == IlluminantKind::led)
+        text += fmt::format("temperature_k = {}\n", scene.environment.temperature_k);
+    text += fmt::format(
+        "\n[opal]\ndiffraction = \"{}\"\newald_tolerance = {}\nmax_odds = {}\ndispersion = \"{}\"\nmajorants = \"{}\"\n"
+        "grains = \"voxels\"\ncompanions = {}\n",
+        name(diffraction_names, scene.opal.diffraction), scene.opal.ewald_tolerance, scene.opal.max_odds,
+        name(dispersion_names, scene.opal.dispersion), name(majorant_names, scene.opal.majorants), scene.opal.companions);
     for (const MaterialDescription& material : scene.materials)
         text += fmt::format("\n[[material]]\nname = {}\nkind = \"{}\"\nalbedo = {}\n", toml_quoted(material.name),
                             name(material_names, material.kind), vector_text(material.albedo));

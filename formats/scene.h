@@ -13,7 +13,11 @@ enum class SamplerKind { stratified, independent };
 enum class FilterKind { tent, box };
 enum class CameraKind { perspective, orthographic };
 enum class EnvironmentKind { studio, constant, file };
-enum class DiffractionModel { two_beam, none };
+enum class IlluminantKind { d65, a, equal_energy, blackbody, led, file };
+enum class Upsampling { jakob_hanika, smits, basis };
+enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
+enum class Dispersion { full, bands, none };
+enum class MajorantKind { local, global };
 enum class MaterialKind { diffuse };
 enum class ObjectKind { opal, mesh, plane, sphere, cylinder };
 
@@ -42,18 +46,27 @@ struct FilmDescription {
     bool spectral = false;  ///< 48 layers of 10 nm beside the RGB
     std::vector<std::string> aovs;
     double exposure_ev = 0.0;
+    IlluminantKind white = IlluminantKind::d65;  ///< what is shown as white; d65, a or equal_energy
 };
 
 struct EnvironmentDescription {
     EnvironmentKind kind = EnvironmentKind::studio;
     std::filesystem::path file;
-    double radiance = 1.0;    ///< scale of the whole environment
-    double rotate_deg = 0.0;  ///< counter-clockwise about +Z, seen from above
+    double radiance = 1.0;                            ///< scale of the whole environment
+    double rotate_deg = 0.0;                          ///< counter-clockwise about +Z, seen from above
+    IlluminantKind illuminant = IlluminantKind::d65;  ///< spectrum of what the picture shows as white
+    double temperature_k = 4000.0;                    ///< blackbody, led
+    std::filesystem::path illuminant_file;            ///< .csv
 };
 
 struct OpalDescription {
     DiffractionModel diffraction = DiffractionModel::two_beam;
-    int companions = 3;  ///< wavelengths that travel with the hero
+    double ewald_tolerance = 0.01;  ///< ewald-fresnel: largest deviation of |w + (lambda/n) G| from 1
+    double max_odds = 100.0;        ///< reflection odds of one grain saturate here; reflectance is low by at most 1 / max_odds
+    Dispersion dispersion =
+        Dispersion::full;  ///< full: bands and refraction; bands: diffraction alone; none: indices at 589.3 nm
+    MajorantKind majorants = MajorantKind::local;
+    int companions = 3;  ///< wavelengths that travel with the hero, 0 to 7
 };
 
 struct MaterialDescription {
@@ -76,11 +89,17 @@ struct ObjectDescription {
     std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
 };
 
+/// How colours of the scene become spectra.
+struct ColorDescription {
+    Upsampling upsampling = Upsampling::jakob_hanika;
+};
+
 /// What opal-render draws: a validated scene.toml.
 struct SceneDescription {
     RenderDescription render;
     CameraDescription camera;
     FilmDescription film;
+    ColorDescription color;
     EnvironmentDescription environment;
     OpalDescription opal;
     std::vector<MaterialDescription> materials;

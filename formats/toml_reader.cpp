@@ -155,6 +155,10 @@ bool TomlSection::is_array(const std::string& key) const {
     return has(key) && table_->get(key)->is_array();
 }
 
+bool TomlSection::is_text(const std::string& key) const {
+    return has(key) && table_->get(key)->is_string();
+}
+
 double TomlSection::number(const std::string& key, double fallback, const NumberRange& range) {
     const toml::node* node = find(key);
     if (!node) return fallback;

@@ -34,6 +34,7 @@ class TomlSection {
 
     bool has(const std::string& key) const;
     bool is_array(const std::string& key) const;
+    bool is_text(const std::string& key) const;
     double number(const std::string& key, double fallback, const NumberRange& range);
     std::int64_t integer(const std::string& key, std::int64_t fallback, std::int64_t min, std::int64_t max);
     bool boolean(const std::string& key, bool fallback);

@@ -61,7 +61,11 @@ OpalConstants constants_of(const Recipe& recipe) {
         absorber_spectrum(recipe.base_color.absorber, recipe.base_color.sigma_a_per_mm, recipe.base_color.sigma_a_reference_nm);
     constants.sigma_s_rayleigh_400nm_per_mm = recipe.base_color.sigma_s_rayleigh_400nm_per_mm;
     constants.sigma_s_mie_per_mm = recipe.base_color.sigma_s_mie_per_mm;
+    constants.mie_phase = recipe.base_color.mie_phase;
     constants.mie_asymmetry = recipe.base_color.mie_asymmetry;
+    constants.draine_alpha = recipe.base_color.draine_alpha;
+    constants.mie_particle = recipe.base_color.mie_particle;
+    constants.mie_particle_diameter_nm = recipe.base_color.mie_particle_diameter_nm;
     return constants;
 }
 

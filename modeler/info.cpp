@@ -20,10 +20,10 @@ namespace {
 const double fcc_fill = units::pi / (3.0 * std::sqrt(2.0));
 
 nlohmann::json describe_constants(const OpalConstants& constants) {
-    const double n_eff = fcc_fill * constants.n_sphere + (1.0 - fcc_fill) * constants.n_medium;
+    const double n_eff = fcc_fill * constants.n_sphere.at(sodium_d_nm) + (1.0 - fcc_fill) * constants.n_medium.at(sodium_d_nm);
     return {{"sphere_diameter_nm", constants.sphere_diameter_nm},
-            {"n_sphere", constants.n_sphere},
-            {"n_medium", constants.n_medium},
+            {"n_sphere", constants.n_sphere.at(sodium_d_nm)},
+            {"n_medium", constants.n_medium.at(sodium_d_nm)},
             {"n_eff", n_eff},
             {"wavelength_111_normal_nm", 2.0 * n_eff * constants.sphere_diameter_nm * std::sqrt(2.0 / 3.0)},
             {"coherence_length_um", constants.coherence_length_um},

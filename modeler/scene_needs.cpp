@@ -125,7 +125,8 @@ SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std
     }
     needs.boundary_error_mm = half_diagonal * needs.voxel_size_mm;
     needs.boundary_error_pixels = needs.pixel_footprint_mm > 0.0 ? needs.boundary_error_mm / needs.pixel_footprint_mm : 0.0;
-    const double n_eff = fcc_fill * recipe.crystal.n_sphere + (1.0 - fcc_fill) * recipe.crystal.n_medium;
+    const double n_eff =
+        fcc_fill * recipe.crystal.n_sphere.at(sodium_d_nm) + (1.0 - fcc_fill) * recipe.crystal.n_medium.at(sodium_d_nm);
     needs.lens_magnification = n_eff < 2.0 ? n_eff / (2.0 - n_eff) : std::numeric_limits<double>::infinity();
     drop_what_does_not_show(recipe, extents_mm.length(), needs);
     return needs;

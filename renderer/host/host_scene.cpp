@@ -142,7 +142,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
 
     recipe_toml_ = asset.recipe_toml;
     const OpalConstants& constants = asset.constants;
-    const CrystalParameters crystal{constants.sphere_diameter_nm, constants.n_sphere, constants.n_medium};
+    const CrystalParameters crystal{constants.sphere_diameter_nm, constants.n_sphere.at(sodium_d_nm),
+                                    constants.n_medium.at(sodium_d_nm)};
     opal.n_eff = float(effective_index(crystal));
     opal.num_pairs = choose_pairs(crystal, opal.pairs, reciprocal_points_, notices);
     opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
