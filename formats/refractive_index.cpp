@@ -57,8 +57,8 @@ const std::vector<std::string>& refractive_materials() {
 RefractiveIndex RefractiveIndex::of_material(const std::string& name) {
     const std::vector<std::string>& names = refractive_materials();
     if (std::find(names.begin(), names.end(), name) == names.end())
-        throw InputError(
-            fmt::format("'{}' is not a known material; allowed: a number from 1 to 4, {} or a .csv's path", name, join(names)));
+        throw InputError(fmt::format("'{}' is not a known material; allowed: a number from 1 to 4, {} or a .csv's path{}", name,
+                                     join(names), did_you_mean(name, names)));
     RefractiveIndex index(0.0);
     index.name_ = name;
     index.constant_ = index.at(sodium_d_nm);

@@ -48,7 +48,9 @@ TEST_F(BadInput, Recipe) {
     expect_failure(build("nowhere.toml"), 2, "nowhere.toml: no such file");
     expect_failure(build("text.toml"), 2, "text.toml:1:");
     expect_failure(build("zero_sites.toml"), 2, "zero_sites.toml:4:13: grains.num_sites: 0 is out of range; allowed: 1 to");
-    expect_failure(build("wrong_type.toml"), 2, "wrong_type.toml:4:12: crystal.n_sphere: 'high' is not a known material; allowed: a number from 1 to 4, silica, water");
+    expect_failure(
+        build("wrong_type.toml"), 2,
+        "wrong_type.toml:4:12: crystal.n_sphere: 'glass' is not a known material; allowed: a number from 1 to 4, silica, water");
     expect_failure(build("not_a_number.toml"), 2, "not_a_number.toml:4:12: crystal.n_sphere: nan is out of range");
     expect_failure(build("negative.toml"), 2, "negative.toml:4:18: base_color.sigma_a_per_mm: -0.1 is out of range");
     expect_failure(build("probability.toml"), 2,
