@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
+#include "formats/colorimetry.h"
 #include "renderer/core/path_random.h"
 #include "renderer/host/spectrum_tables.h"
 
@@ -17,7 +18,7 @@ Rgb3d rgb_of(const SpectrumTablesData& tables, Rgb color) {
         y += radiance * double(tables.observer[std::size_t(i)].y);
         z += radiance * double(tables.observer[std::size_t(i)].z);
     }
-    return linear_srgb_from_xyz(x, y, z);
+    return linear_srgb_from_xyz({x, y, z});
 }
 
 TEST(Spectrum, UpsampledColorsComeBackExactly) {
