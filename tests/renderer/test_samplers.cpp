@@ -4,7 +4,7 @@
 #include "chi_square.h"
 #include "formats/units.h"
 #include "renderer/core/camera.h"
-#include "renderer/core/free_flight.h"
+#include "renderer/core/medium.h"
 #include "renderer/core/surface_scattering.h"
 #include "renderer/host/environment_map.h"
 
@@ -49,13 +49,22 @@ TEST(Samplers, LensDisc) {
         [](SamplerPoint<2> p) { return std::hypot(p[0], p[1]) < 2.0 ? 1.0 / (4.0 * units::pi) : 0.0; }));
 }
 
-TEST(Samplers, FreeFlight) {
-    for (const float sigma : {1.0e-3f, 0.7f, 500.0f})
+TEST(Samplers, FlightThroughAMedium) {
+    for (const float sigma_s_per_mm : {1.0e-3f, 0.7f, 500.0f}) {
+        LaneMedium<1> medium;
+        medium.sigma_mie.v[0] = sigma_s_per_mm;
         // The largest float below 1 gives 16.7 mean free paths.
-        EXPECT_TRUE(check_inversion(
-            "free flight", 0.0, 17.0 / double(sigma), [sigma](float u) { return sample_free_flight_mm(u, sigma); },
-            [sigma](double t) { return double(sigma) * std::exp(-double(sigma) * t); }));
-    EXPECT_GT(sample_free_flight_mm(0.5f, 0.0f), 1.0e38f);
+        const double farthest_mm = 17.0 / double(sigma_s_per_mm);
+        std::uint32_t path = 0;
+        EXPECT_TRUE(check_sampler(
+            "flight", SamplerDomain<1>{{0.0}, {farthest_mm}, {64}},
+            [&](SamplerRandom&) {
+                PathRandom random(1, 0, path++);
+                LaneWeights<1> weights;
+                return SamplerPoint<1>{double(MediumFlight<1>(medium, random).advance(3.0e38f, weights))};
+            },
+            [&](SamplerPoint<1> t) { return double(sigma_s_per_mm) * std::exp(-double(sigma_s_per_mm) * t[0]); }));
+    }
 }
 
 /// Over the sine of the elevation and the azimuth, in which equal cells are equal solid angles.
