@@ -44,8 +44,12 @@ TEST(OpticsCommand, Reflectance) {
     ASSERT_EQ(table.rows.size(), 241u);
     EXPECT_EQ(table.rows.front()[0], 520.0);
     EXPECT_EQ(table.rows.back()[0], 640.0);
-    // At 579.5 nm, next to the Bragg wavelength 579.56: tanh^2(kappa t), kappa t = 12 pi |eps_G| / n_eff^2.
-    EXPECT_NEAR(table.rows[119][3], std::pow(std::tanh(12.0 * M_PI * 0.028919 / std::pow(1.41964, 2)), 2), 2e-4);
+    // At 579.5 nm, next to the Bragg wavelength 579.56: tanh^2(kappa t), kappa t = 12 pi |eps_G| / n_eff^2, less 1e-4 for the
+    // step.
+    const double x = M_PI * std::sqrt(1.5), filling = M_PI / (3.0 * std::sqrt(2.0));
+    const double epsilon = (1.45 * 1.45 - 1.333 * 1.333) * filling * 3.0 * (std::sin(x) - x * std::cos(x)) / (x * x * x);
+    const double n_eff = filling * 1.45 + (1.0 - filling) * 1.333;
+    EXPECT_NEAR(table.rows[119][3], std::pow(std::tanh(12.0 * M_PI * epsilon / (n_eff * n_eff)), 2), 1e-4);
     for (const auto& row : table.rows) EXPECT_NEAR(row[3], 0.5 * (row[1] + row[2]), 1e-9);
 
     for (const char* model : {"ewald-fresnel --tolerance 1e-3", "laue", "transfer-matrix"})
@@ -115,7 +119,7 @@ TEST(OpticsCommand, ColorOfSpectra) {
     EXPECT_NE(color(white).find("#ffffff"), std::string::npos);
     EXPECT_NE(color(white).find(",0.3127"), std::string::npos);
     EXPECT_NE(color(white + " --illuminant A --white A").find("#ffffff"), std::string::npos);
-    EXPECT_NE(color(white + " --kind emission").find("1,1,1,0.3333"), std::string::npos);
+    EXPECT_NE(color(white + " --kind emission").find(",0.3333"), std::string::npos);
     EXPECT_EQ(color(white + " --illuminant A").find("#ffffff"), std::string::npos);
     for (const char* light : {"E", "blackbody:3000", "led:4000"})
         EXPECT_NE(color(white + " --illuminant " + light + " --white " + light).find("#ffffff"), std::string::npos) << light;
