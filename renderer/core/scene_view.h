@@ -19,7 +19,7 @@ struct MeshView {
 };
 
 struct DiffuseMaterial {
-    Rgb albedo;
+    UpsampledColor albedo;
 };
 
 /// The opal of the scene.

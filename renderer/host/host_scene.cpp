@@ -11,6 +11,7 @@
 #include "formats/opal_asset.h"
 #include "formats/units.h"
 #include "renderer/host/opal_surface.h"
+#include "renderer/host/upsampler.h"
 
 namespace opal {
 namespace {
@@ -59,6 +60,10 @@ MeanCoefficients mean_coefficients(const OpalAsset& asset, const std::string& fi
             mean(asset.sigma_s_mie, grid_names::sigma_s_mie, asset.constants.sigma_s_mie_per_mm)};
 }
 
+SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
+    return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
+}
+
 void notice_unused_disorder(const OpalConstants& constants, const std::string& file, std::vector<std::string>& notices) {
     if (constants.stacking_fault_probability > 0.0)
         notices.push_back(fmt::format("{}: stacking_fault_probability {:.4g} is not used by the renderer yet", file,
@@ -88,9 +93,12 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
-    : spectra_(make_spectrum_tables()), environment_(make_environment(description.environment)) {
+    : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
+                                     description.render.sampler == SamplerKind::independent})),
+      environment_(make_environment(description.environment, description.color.upsampling)) {
     for (const MaterialDescription& material : description.materials)
-        materials_.push_back({{float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])}});
+        materials_.push_back({upsample_reflectance(
+            spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])})});
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
             add_opal(object, description.opal, notices);

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "chi_square.h"
+#include "renderer/host/spectrum_tables.h"
+
+namespace opal {
+namespace {
+
+/// The probability that the columns give each index is the weight's share, to the rounding of the columns.
+TEST(AliasTable, ColumnsHoldTheWeightsShares) {
+    const std::vector<float> weights = {0.0f, 3.0f, 1.0f, 0.25f, 0.0f, 10.0f, 0.5f};
+    const AliasTableData table = make_alias_table(weights);
+    std::vector<double> probability(weights.size(), 0.0);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        probability[i] += double(table.columns[i].keep) / double(weights.size());
+        probability[std::size_t(table.columns[i].other)] += (1.0 - double(table.columns[i].keep)) / double(weights.size());
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_NEAR(probability[i], double(weights[i]) / 14.75, 1e-7) << i;
+}
+
+TEST(AliasTable, DrawsFollowTheWeights) {
+    const std::vector<float> weights = {2.0f, 0.0f, 1.0f, 8.0f, 5.0f};
+    const AliasTableData table = make_alias_table(weights);
+    const auto draw = [&](double u) {
+        float within = -1.0f;
+        const int index = table.view().sample(float(u), within);
+        EXPECT_GE(within, 0.0f);
+        EXPECT_LT(within, 1.0f);
+        return double(index) + double(within);
+    };
+    EXPECT_TRUE(density_matches(
+        draw, [&](double x) { return double(weights[std::size_t(std::min(4.0, x))]) / 16.0; }, 0.0, 5.0, 1'000'000, 5));
+    // Within one index, what is left of the number is even.
+    EXPECT_TRUE(density_matches([&](double u) { return draw(0.6 + 0.4 * u) - std::floor(draw(0.6 + 0.4 * u)); },
+                                [](double) { return 1.0; }, 0.0, 1.0, 200'000, 32));
+}
+
+/// Hero and companions, each by itself, follow the density of the light at hand, drawn by inversion and by alias table.
+TEST(AliasTable, WavelengthsFollowTheLightTimesTheResponse) {
+    for (const double temperature_k : {1500.0, 6500.0})
+        for (const bool alias : {false, true}) {
+            SpectrumTableOptions options;
+            options.illuminant = illuminant_spectrum(IlluminantKind::led, temperature_k);
+            options.alias = alias;
+            const SpectrumTablesData tables = make_spectrum_tables(options);
+            double total = 0.0;
+            const auto response = [&](int i) {
+                const Vec3 observer = tables.observer[std::size_t(i)];
+                return double(observer.x + observer.y + observer.z) * double(tables.white[std::size_t(i)]);
+            };
+            for (int i = 0; i < 470; ++i) total += 0.5 * (response(i) + response(i + 1));
+            const auto density = [&](double wavelength_nm) {
+                const int i = std::min(469, int(wavelength_nm) - 360);
+                return 0.9 * 0.5 * (response(i) + response(i + 1)) / total + 0.1 / 470.0;
+            };
+            for (int lane = 0; lane < num_lanes; ++lane)
+                EXPECT_TRUE(density_matches(
+                    [&](double u) { return double(sample_wavelengths(tables.view(), float(u), num_lanes).wavelength_nm[lane]); },
+                    density, 360.0, 830.0, 300'000, 47))
+                    << temperature_k << " K, lane " << lane << (alias ? ", alias" : ", inversion");
+            float pdf = 0.0f;
+            for (const float u : {0.0f, 0.123f, 0.5f, 0.99999994f}) {
+                const float wavelength_nm = sample_wavelength(tables.view(), u, pdf);
+                EXPECT_EQ(pdf, tables.pdf[std::size_t(wavelength_nm - 360.0f)]);
+            }
+        }
+}
+
+/// Inversion keeps the order of the numbers, and so their strata; the alias table does not.
+TEST(AliasTable, OnlyInversionIsMonotone) {
+    SpectrumTableOptions options;
+    for (const bool alias : {false, true}) {
+        options.alias = alias;
+        const SpectrumTablesData tables = make_spectrum_tables(options);
+        bool monotone = true;
+        float previous = 0.0f, pdf = 0.0f;
+        for (int i = 0; i < 1000; ++i) {
+            const float wavelength_nm = sample_wavelength(tables.view(), (float(i) + 0.5f) / 1000.0f, pdf);
+            monotone &= wavelength_nm >= previous;
+            previous = wavelength_nm;
+        }
+        EXPECT_EQ(monotone, !alias);
+    }
+}
+
+}  // namespace
+}  // namespace opal
