@@ -140,7 +140,7 @@ TEST_F(AssetGrids, FilesOfSchemaOneStillRead) {
     EXPECT_EQ(old.tessellation, TessellationKind::additive);
     raw.metadata.removeMeta("opal_schema_version");
     raw.metadata.insertMeta("opal_schema_version", openvdb::Int32Metadata(opal_schema_version + 1));
-    EXPECT_INPUT_ERROR(asset_from_raw(raw, "new.vdb", {}, notices_), "opal schema 3 is not known; this program reads 1 to 2");
+    EXPECT_INPUT_ERROR(asset_from_raw(raw, "new.vdb", {}, notices_), "opal schema 4 is not known; this program reads 1 to 3");
 }
 
 TEST_F(AssetGrids, SitesComeBackExactly) {
