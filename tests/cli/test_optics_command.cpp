@@ -146,6 +146,8 @@ TEST(OpticsCommand, WhatIsWrongIsNamed) {
     refused("reflectance --layers 10 --model exact", "--model");
     refused("reflectance --layers 10 --tolerance 0.1", "goes with --model ewald-fresnel only");
     refused("reflectance --layers 10 --slices 64", "goes with --model transfer-matrix only");
+    refused("reflectance --layers 10 --ambient medium", "goes with --model transfer-matrix only");
+    refused("reflectance --layers 3 --hkl 2,2,2 --model transfer-matrix --ambient medium", "multiple of 2");
     refused("reflectance --layers 10 --filling 0.8", "--filling 0.8");
     refused("reflectance --layers 10 --blocks 0", "--blocks 0");
     refused("reflectance --layers 10 --n-sphere silika", "did you mean 'silica'");
