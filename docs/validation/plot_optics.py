@@ -98,8 +98,8 @@ def slab_in_air(program):
         place, height, width = peak_of(x, curve)
         print(f"| {name} | {place:.4f} | {height:.4f} | {width:.4f} |")
         axes.plot(x, curve, "k." if name.startswith("full") else "-", markersize=3, label=name)
-    axes.set(xlabel="wavelength / sphere diameter", ylabel="reflectance", title="12 (111) layers of spheres 1.45 in air")
-    axes.legend(fontsize=8)
+    axes.set(xlabel="wavelength / sphere diameter", ylabel="reflectance", title="12 (111) layers of spheres 1.45 in air", ylim=(0, 0.9))
+    axes.legend(fontsize=7, ncol=2, loc="upper center")
     save(figure, "fdtd")
 
 
