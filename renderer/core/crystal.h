@@ -10,10 +10,12 @@ inline constexpr double fcc_filling = 0.74048048969306104;  ///< pi / (3 sqrt 2)
 
 /// A pair of reciprocal vectors +G and -G: one family of lattice planes. No factor 2 pi: |G| = sqrt(h^2+k^2+l^2) / a.
 struct PlanePair {
-    Vec3 normal;     ///< unit G, lattice frame (cubic axes)
-    float g_per_nm;  ///< |G|
-    float epsilon;   ///< |Fourier coefficient of the permittivity| for this G
-    int h, k, l;
+    Vec3 normal;                   ///< unit G, lattice frame (cubic axes)
+    float g_per_nm;                ///< |G|
+    float form;                    ///< |Fourier coefficient of the permittivity| over the contrast n_sphere^2 - n_medium^2
+    int h, k, l;                   ///< of stacked crystals: hexagonal H, K and the order along the stacking axis
+    float coherence_nm = 3.0e38f;  ///< a block of this family is no thicker than this, whatever the grain's blocks are
+    float share = 1.0f;            ///< part of the volume in which this family exists
 };
 
 /// Enough for spheres of 1000 nm: |G| <= 2 n / 360 nm.
@@ -32,12 +34,16 @@ inline double effective_index(const CrystalParameters& crystal) {
     return fcc_filling * crystal.n_sphere + (1.0 - fcc_filling) * crystal.n_medium;
 }
 
-/// Fourier coefficient of the permittivity of touching spheres at |G| (1/nm):
-/// (n_s^2 - n_m^2) f 3 (sin x - x cos x) / x^3 with x = pi |G| d.
+/// Form factor of a fraction f of spheres at |G| (1/nm): f 3 (sin x - x cos x) / x^3 with x = pi |G| d.
+inline double sphere_form_factor(double sphere_diameter_nm, double g_per_nm) {
+    const double x = 3.14159265358979324 * g_per_nm * sphere_diameter_nm;
+    return fcc_filling * 3.0 * (sin(x) - x * cos(x)) / (x * x * x);
+}
+
+/// Fourier coefficient of the permittivity of touching spheres: (n_s^2 - n_m^2) times the form factor.
 inline double permittivity_coefficient(const CrystalParameters& crystal, double g_per_nm) {
-    const double x = double(pi_f) * g_per_nm * crystal.sphere_diameter_nm;
     const double contrast = crystal.n_sphere * crystal.n_sphere - crystal.n_medium * crystal.n_medium;
-    return contrast * fcc_filling * 3.0 * (sin(x) - x * cos(x)) / (x * x * x);
+    return contrast * sphere_form_factor(crystal.sphere_diameter_nm, g_per_nm);
 }
 
 /// All pairs with |G| <= 2 n_eff / lambda_min, shortest first (then by h, k, l), the first `capacity` of them. Returns how many
@@ -63,7 +69,7 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
                     if (count < capacity)
                         pairs[count] = {{float(h / root), float(k / root), float(l / root)},
                                         float(g_per_nm),
-                                        float(fabs(permittivity_coefficient(crystal, g_per_nm))),
+                                        float(fabs(sphere_form_factor(crystal.sphere_diameter_nm, g_per_nm))),
                                         h,
                                         k,
                                         l};

@@ -13,12 +13,15 @@ class PathRandom {
         : seed_(seed), index_((uint64_t(pixel) << 32) | sample), used_(4), next_block_(0) {}
 
     /// Uniform in [0, 1).
-    OPAL_HD float next() {
+    OPAL_HD float next() { return uniform_float(next_bits()); }
+
+    /// 32 random bits.
+    OPAL_HD uint32_t next_bits() {
         if (used_ == 4) {
             block_ = random_block(seed_, RandomStream::render_paths, index_, next_block_++);
             used_ = 0;
         }
-        return uniform_float(block_.value[used_++]);
+        return block_.value[used_++];
     }
 
   private:

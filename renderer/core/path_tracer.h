@@ -10,17 +10,19 @@
 namespace opal {
 
 /// What one path found, per lane, before the division by the lane's wavelength density.
+template <int N>
 struct PathResult {
-    Lanes radiance;
-    Lanes truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
+    Lanes<N> radiance;
+    Lanes<N> truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
 };
 
 /// Spectra that a path needs at every light, looked up once.
+template <int N>
 struct LaneSpectra {
-    Vec3 basis[num_lanes];
-    float white[num_lanes];
+    Vec3 basis[N];
+    float white[N];
 
-    OPAL_HD LaneSpectra(const SpectrumTables& tables, const PathWavelengths& wavelengths) {
+    OPAL_HD LaneSpectra(const SpectrumTables& tables, const PathWavelengths<N>& wavelengths) {
         for (int i = 0; i < wavelengths.count; ++i) {
             basis[i] = table_at(tables.rgb_basis, wavelengths.wavelength_nm[i]);
             white[i] = table_at(tables.white, wavelengths.wavelength_nm[i]);
@@ -32,10 +34,10 @@ struct LaneSpectra {
     OPAL_HD float radiance(Rgb color, int lane) const { return white[lane] * reflectance(color, lane); }
 };
 
-template <class Intersector>
+template <int N, class Intersector>
 class PathTracer {
   public:
-    OPAL_HD PathTracer(const SceneView& scene, const Intersector& intersector, const PathWavelengths& wavelengths,
+    OPAL_HD PathTracer(const SceneView& scene, const Intersector& intersector, const PathWavelengths<N>& wavelengths,
                        PathRandom& random, PathCounters& counters)
         : scene_(scene),
           intersector_(intersector),
@@ -44,13 +46,16 @@ class PathTracer {
           counters_(counters),
           spectra_(scene.spectra, wavelengths) {
         weights_.count = wavelengths.count;
-        if (scene.opal.present) medium_ = lane_medium(scene.opal, wavelengths);
+        if (scene.opal.present) {
+            medium_ = lane_medium(scene.opal.medium, wavelengths);
+            optics_ = lane_optics(scene.opal, wavelengths);
+        }
     }
 
     /// Traces one path from the camera. Where it first meets the opal from outside it goes on both ways, each weighted by its
     /// Fresnel factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the
     /// noise.
-    OPAL_HD PathResult trace(const Ray& camera) {
+    OPAL_HD PathResult<N> trace(const Ray& camera) {
         follow(camera, 0);
         if (reflection_pending_) {
             weights_ = reflection_weights_;
@@ -63,12 +68,12 @@ class PathTracer {
 
   private:
     OPAL_HD void follow(Ray ray, int bounce) {
-        for (;; ++bounce) {
+        while (true) {
             RayHit hit;
             const bool found = intersector_.closest(ray, hit);
             if (bounce == 0 && found && meets_opal_from_within(ray, hit)) inside_ = true;
-            if (bounce == scene_.max_bounces && (found || inside_)) {
-                const Lanes lost = weights_.contribution();
+            if (bounce >= scene_.max_bounces && (found || inside_)) {
+                const Lanes<N> lost = weights_.contribution();
                 for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
                 ++counters_.truncated_paths;
                 return;
@@ -78,11 +83,13 @@ class PathTracer {
                     ++counters_.lost_paths;
                     return;
                 }
-                const InteriorEvent event = cross_interior(scene_.opal, wavelengths_, medium_, ray, hit.distance_mm, interior_,
-                                                           weights_, random_, counters_);
+                const InteriorEvent event =
+                    cross_interior(scene_.opal, optics_, medium_, ray, hit.distance_mm, visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
                     specular_ = true;
+                    // Going back and forth between two beams is one event, however many turns it takes.
+                    if (!event.turned_back) ++bounce;
                     if (!survives_roulette(bounce)) return;
                     continue;
                 }
@@ -93,7 +100,7 @@ class PathTracer {
             }
             const Surface surface = surface_at(scene_, hit);
             ray = surface.material < 0 ? meet_opal(ray, surface, bounce) : meet_diffuse(ray, surface);
-            if (!survives_roulette(bounce)) return;
+            if (!survives_roulette(++bounce)) return;
         }
     }
 
@@ -104,30 +111,43 @@ class PathTracer {
     }
 
     OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface, int bounce) {
-        if (bounce == 0 && !inside_) return split_at_opal(ray, surface);
-        const Vec3 direction = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, random_.next());
-        const bool goes_inside = dot(direction, surface.geometric_normal) < 0.0f;
-        if (goes_inside != inside_) interior_.grain = 0;
-        inside_ = goes_inside;
-        interior_.tested_pairs = 0;
-        specular_ = true;
-        return {offset_origin(surface.position, surface.geometric_normal, direction), direction};
+        const DielectricSplit<N> split = split_dielectric<N>(ray.direction, surface, optics_.surface_index);
+        if (bounce == 0 && !inside_) return keep_both(surface, split);
+        const bool reflects = random_.next() < split.reflectance[0];
+        for (int i = 1; i < weights_.count; ++i)
+            weights_.ratio.v[i] *= reflects ? split.reflectance[i] / split.reflectance[0]
+                                            : (1.0f - split.reflectance[i]) / (1.0f - split.reflectance[0]);
+        if (reflects) {
+            visit_.renew();
+            specular_ = true;
+            return leaving(surface, split.reflected);
+        }
+        return refracted(surface, split);
     }
 
     /// Keeps the reflected half for later and returns the refracted one.
-    OPAL_HD Ray split_at_opal(const Ray& ray, const Surface& surface) {
-        const float reflectance = dielectric_reflectance(ray.direction, surface, scene_.opal.n_eff);
-        const Vec3 reflected = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, 0.0f);
-        const Vec3 refracted = scatter_dielectric(ray.direction, surface, scene_.opal.n_eff, 1.0f);
-        reflection_ = {offset_origin(surface.position, surface.geometric_normal, reflected), reflected};
+    OPAL_HD Ray keep_both(const Surface& surface, const DielectricSplit<N>& split) {
+        reflection_ = leaving(surface, split.reflected);
         reflection_weights_ = weights_;
         for (int i = 0; i < weights_.count; ++i) {
-            reflection_weights_.throughput.v[i] *= reflectance;
-            weights_.throughput.v[i] *= 1.0f - reflectance;
+            reflection_weights_.throughput.v[i] *= split.reflectance[i];
+            weights_.throughput.v[i] *= 1.0f - split.reflectance[i];
         }
         reflection_pending_ = true;
-        inside_ = dot(refracted, surface.geometric_normal) < 0.0f;
-        return {offset_origin(surface.position, surface.geometric_normal, refracted), refracted};
+        return refracted(surface, split);
+    }
+
+    OPAL_HD Ray refracted(const Surface& surface, const DielectricSplit<N>& split) {
+        // Each wavelength is refracted into a direction of its own: a companion would never have gone the hero's way.
+        if (scene_.opal.surface_disperses) weights_.drop_companions();
+        inside_ = dot(split.refracted, surface.geometric_normal) < 0.0f;
+        visit_.enter(0);
+        specular_ = true;
+        return leaving(surface, split.refracted);
+    }
+
+    OPAL_HD static Ray leaving(const Surface& surface, Vec3 direction) {
+        return {offset_origin(surface.position, surface.geometric_normal, direction), direction};
     }
 
     OPAL_HD Ray meet_diffuse(const Ray& ray, const Surface& surface) {
@@ -164,7 +184,7 @@ class PathTracer {
     }
 
     OPAL_HD void add_light(Rgb radiance, float weight) {
-        const Lanes contribution = weights_.contribution();
+        const Lanes<N> contribution = weights_.contribution();
         for (int i = 0; i < weights_.count; ++i)
             result_.radiance.v[i] += weight * contribution.v[i] * spectra_.radiance(radiance, i);
     }
@@ -173,7 +193,7 @@ class PathTracer {
     /// stay.
     OPAL_HD bool survives_roulette(int bounce) {
         if (bounce < 4) return true;
-        const Lanes contribution = weights_.contribution();
+        const Lanes<N> contribution = weights_.contribution();
         float largest = 0.0f;
         for (int i = 0; i < weights_.count; ++i) largest = max_of(largest, contribution.v[i]);
         if (!(largest < 1.0f)) return true;
@@ -184,16 +204,17 @@ class PathTracer {
 
     const SceneView& scene_;
     const Intersector& intersector_;
-    const PathWavelengths& wavelengths_;
+    const PathWavelengths<N>& wavelengths_;
     PathRandom& random_;
     PathCounters& counters_;
-    LaneSpectra spectra_;
-    LaneMedium medium_;
-    LaneWeights weights_;
-    InteriorState interior_;
-    PathResult result_;
+    LaneSpectra<N> spectra_;
+    LaneMedium<N> medium_;
+    LaneOptics<N> optics_;
+    LaneWeights<N> weights_;
+    GrainVisit<N> visit_;
+    PathResult<N> result_;
     Ray reflection_;
-    LaneWeights reflection_weights_;
+    LaneWeights<N> reflection_weights_;
     bool reflection_pending_ = false;
     bool inside_ = false;
     bool specular_ = true;
@@ -201,9 +222,9 @@ class PathTracer {
 };
 
 /// The camera ray and the wavelengths of one sample, and its path: what a kernel does for one work index (pixel, sample).
-template <class Intersector>
-OPAL_HD PathResult trace_sample(const SceneView& scene, const Intersector& intersector, uint32_t pixel, uint32_t sample,
-                                PathWavelengths& wavelengths, PathCounters& counters) {
+template <int N, class Intersector>
+OPAL_HD PathResult<N> trace_sample(const SceneView& scene, const Intersector& intersector, uint32_t pixel, uint32_t sample,
+                                   PathWavelengths<N>& wavelengths, PathCounters& counters) {
     PathRandom random(scene.seed, pixel, sample);
     const PixelSequence sequence(scene.seed, pixel, sample);
     const float u = scene.stratified ? sequence.wavelength() : random.next();
@@ -213,16 +234,16 @@ OPAL_HD PathResult trace_sample(const SceneView& scene, const Intersector& inter
         x = 0.5f + sample_tent(x);
         y = 0.5f + sample_tent(y);
     }
-    wavelengths = sample_wavelengths(scene.spectra, u, scene.wavelengths);
+    wavelengths = sample_wavelengths<N>(scene.spectra, u, scene.wavelengths);
     const float lens_u = random.next(), lens_v = random.next();
     const Ray ray = camera_ray(scene.camera, (float(pixel % uint32_t(scene.width)) + x) / float(scene.width),
                                (float(pixel / uint32_t(scene.width)) + y) / float(scene.height), lens_u, lens_v);
-    PathTracer<Intersector> tracer(scene, intersector, wavelengths, random, counters);
-    PathResult result = tracer.trace(ray);
+    PathTracer<N, Intersector> tracer(scene, intersector, wavelengths, random, counters);
+    PathResult<N> result = tracer.trace(ray);
     for (int i = 0; i < wavelengths.count; ++i)
         if (!(result.radiance.v[i] >= 0.0f && result.radiance.v[i] < 3.0e38f)) {
             ++counters.not_a_number;
-            result.radiance = Lanes{};
+            result.radiance = Lanes<N>{};
             break;
         }
     return result;

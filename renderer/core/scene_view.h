@@ -5,7 +5,8 @@
 #include "renderer/core/crystal.h"
 #include "renderer/core/environment.h"
 #include "renderer/core/grain_walk.h"
-#include "renderer/core/spectrum_view.h"
+#include "renderer/core/medium.h"
+#include "renderer/core/two_beam.h"
 
 /// Everything the transport reads: pointers and counts, the one thing that crosses to a device.
 namespace opal {
@@ -22,22 +23,44 @@ struct DiffuseMaterial {
     Rgb albedo;
 };
 
+/// How lattice planes turn light.
+enum class Diffraction { none, two_beam, ewald_fresnel, laue };
+
 /// The opal of the scene.
 struct OpalView {
     bool present = false;
-    bool diffraction = true;
+    Diffraction diffraction = Diffraction::two_beam;
     RigidTransform world_from_object;
     GrainField grains;
     const Quaternion* orientations = nullptr;  ///< lattice -> object; element g - 1 is grain g's
-    float n_eff = 1.0f;
+    const float* grain_size_mm = nullptr;      ///< object mm; element g - 1: diameter of a ball as large as grain g
+    const float* n_eff = nullptr;              ///< 1 nm table: effective index where light diffracts
+    const float* contrast = nullptr;           ///< 1 nm table: |n_sphere^2 - n_medium^2|
+    const float* relative_index = nullptr;     ///< 1 nm table: n_sphere / n_medium
+    const float* surface_index = nullptr;      ///< 1 nm table: effective index where light refracts
+    bool surface_disperses = false;            ///< surface_index varies
     PlanePair pairs[max_tested_pairs];
     int num_pairs = 0;
-    float coherence_nm = 25000.0f;          ///< mean thickness of a coherent block
-    const float* sigma_a_per_mm = nullptr;  ///< 1 nm table
-    float sigma_s_rayleigh_400nm_per_mm = 0.0f;
-    float sigma_s_mie_per_mm = 0.0f;
-    float mie_asymmetry = 0.0f;
+    float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
+    float mosaic_kappa = 0.0f;      ///< 0: no mosaic spread
+    float max_odds = 100.0f;        ///< where the odds of reflection over a grain's size saturate
+    float ewald_tolerance = 0.01f;
+    MediumView medium;
 };
+
+/// Optical constants of the opal at the wavelengths of a path.
+template <int N>
+OPAL_HD inline LaneOptics<N> lane_optics(const OpalView& opal, const PathWavelengths<N>& wavelengths) {
+    LaneOptics<N> optics;
+    for (int i = 0; i < N; ++i) {
+        optics.wavelength_nm[i] = wavelengths.wavelength_nm[i];
+        optics.n_eff[i] = table_at(opal.n_eff, wavelengths.wavelength_nm[i]);
+        optics.contrast[i] = table_at(opal.contrast, wavelengths.wavelength_nm[i]);
+        optics.relative_index[i] = table_at(opal.relative_index, wavelengths.wavelength_nm[i]);
+        optics.surface_index[i] = table_at(opal.surface_index, wavelengths.wavelength_nm[i]);
+    }
+    return optics;
+}
 
 struct SceneView {
     Camera camera;
@@ -48,7 +71,7 @@ struct SceneView {
     const DiffuseMaterial* materials = nullptr;
     int width = 0, height = 0;
     int max_bounces = 64;
-    int wavelengths = num_lanes;  ///< 1 + companions
+    int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
     bool stratified = true;
     bool tent_filter = true;

@@ -6,19 +6,21 @@
 
 namespace opal {
 
-/// Wavelengths that travel together along one path: lane 0 is the hero, the others are its companions.
-inline constexpr int num_lanes = 4;
+/// Wavelengths that can travel together along one path: lane 0 is the hero, the others are its companions. The transport is
+/// compiled for 1, 4 and 8 lanes.
+inline constexpr int max_lanes = 8;
 inline constexpr float spectrum_min_nm = 360.0f;
 inline constexpr float spectrum_max_nm = 830.0f;
 inline constexpr int spectrum_samples = 471;  ///< of tables in steps of 1 nm
 
 /// One value per lane.
+template <int N>
 struct Lanes {
-    float v[num_lanes] = {};
+    float v[N] = {};
 
     OPAL_HD static Lanes all(float value) {
         Lanes lanes;
-        for (int i = 0; i < num_lanes; ++i) lanes.v[i] = value;
+        for (int i = 0; i < N; ++i) lanes.v[i] = value;
         return lanes;
     }
 };
@@ -46,18 +48,20 @@ OPAL_HD inline T table_at(const T* table, float wavelength_nm) {
 }
 
 /// The wavelengths of one path and their densities (1/nm).
+template <int N>
 struct PathWavelengths {
-    float wavelength_nm[num_lanes];
-    float pdf_per_nm[num_lanes];
-    int count = num_lanes;  ///< lanes in use: 1 + companions
+    float wavelength_nm[N];
+    float pdf_per_nm[N];
+    int count = N;  ///< lanes in use: 1 + companions
 };
 
 /// Draws the hero from the table's density by inversion and its companions by rotating the uniform number (Wilkie et al. 2014,
-/// "Hero wavelength spectral sampling"), so that each lane by itself has the table's density.
-OPAL_HD inline PathWavelengths sample_wavelengths(const SpectrumTables& tables, float u, int count) {
-    PathWavelengths result;
+/// "Hero wavelength spectral sampling"), so that each lane by itself has the table's density. Lanes beyond `count` repeat others.
+template <int N>
+OPAL_HD inline PathWavelengths<N> sample_wavelengths(const SpectrumTables& tables, float u, int count) {
+    PathWavelengths<N> result;
     result.count = count;
-    for (int lane = 0; lane < num_lanes; ++lane) {
+    for (int lane = 0; lane < N; ++lane) {
         float rotated = u + float(lane % count) / float(count);
         rotated -= floorf(rotated);
         int low = 0, high = spectrum_samples - 1;

@@ -6,34 +6,36 @@
 
 namespace opal {
 
-/// Continues a ray at the smooth surface of the opal: reflects with the Fresnel probability, else refracts, so that the
-/// throughput stays 1. Where an interpolated normal would send the ray through the wrong side of the face, the face's own normal
-/// is used. `u` is uniform in [0, 1). Returns the new unit direction.
-OPAL_HD inline Vec3 scatter_dielectric(Vec3 direction, const Surface& surface, float n_eff, float u) {
-    const bool entering = dot(direction, surface.geometric_normal) < 0.0f;
-    const float eta = entering ? n_eff : 1.0f / n_eff;
-    const Vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
-    Vec3 normal = entering ? surface.shading_normal : -surface.shading_normal;
-    for (int attempt = 0; attempt < 2; ++attempt) {
-        const float cos_incident = min_of(1.0f, -dot(direction, normal));
-        if (cos_incident > 0.0f) {
-            float cos_transmitted;
-            const bool reflects = u < fresnel_dielectric(cos_incident, eta, cos_transmitted);
-            const Vec3 result =
-                reflects ? normalize(mirror(direction, normal)) : refract(direction, normal, eta, cos_incident, cos_transmitted);
-            if ((dot(result, face) > 0.0f) == reflects) return result;
-        }
-        normal = face;
-    }
-    return normalize(mirror(direction, face));
-}
+/// Both ways on from a smooth surface, and the Fresnel reflectance between them for every lane.
+template <int N>
+struct DielectricSplit {
+    Vec3 reflected, refracted;  ///< unit; refracted for the hero, zero under total reflection
+    float reflectance[N];
+};
 
-/// Fresnel reflectance that scatter_dielectric uses for a ray that meets the surface from outside.
-OPAL_HD inline float dielectric_reflectance(Vec3 direction, const Surface& surface, float n_eff) {
-    const float cos_shading = -dot(direction, surface.shading_normal);
-    const float cos_incident = min_of(1.0f, cos_shading > 0.0f ? cos_shading : -dot(direction, surface.geometric_normal));
-    float cos_transmitted;
-    return fresnel_dielectric(cos_incident, n_eff, cos_transmitted);
+/// How light of unit `direction` leaves the smooth surface of a body with the lanes' indices `index`. Where an interpolated
+/// normal would send a ray through the wrong side of the face, the face's own normal is used.
+template <int N>
+OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface& surface, const float* index) {
+    const bool entering = dot(direction, surface.geometric_normal) < 0.0f;
+    const Vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
+    const Vec3 shading = entering ? surface.shading_normal : -surface.shading_normal;
+    DielectricSplit<N> split;
+    for (const bool last : {false, true}) {
+        const Vec3 normal = last ? face : shading;
+        const float cos_incident = max_of(1.0e-7f, min_of(1.0f, -dot(direction, normal)));
+        float cos_transmitted = 0.0f;
+        for (int i = N - 1; i >= 0; --i)
+            split.reflectance[i] = fresnel_dielectric(cos_incident, entering ? index[i] : 1.0f / index[i], cos_transmitted);
+        const bool passes = cos_transmitted > 0.0f;
+        split.reflected = normalize(mirror(direction, normal));
+        split.refracted = {};
+        if (passes)
+            split.refracted = refract(direction, normal, entering ? index[0] : 1.0f / index[0], cos_incident, cos_transmitted);
+        if (dot(direction, normal) < 0.0f && dot(split.reflected, face) > 0.0f && (!passes || dot(split.refracted, face) < 0.0f))
+            break;
+    }
+    return split;
 }
 
 /// Cosine-distributed direction around a normal; density cos / pi.

@@ -41,84 +41,71 @@ OPAL_HD inline float block_reflection_odds(float kappa_t, float delta_t) {
     return kappa2 * sine_squared(sqrtf(x2)) / x2;
 }
 
-/// One family of planes met at a given angle: everything but the wavelength.
+/// Optical constants of the crystal at the lanes of a path.
+template <int N>
+struct LaneOptics {
+    float wavelength_nm[N];
+    float n_eff[N];
+    float contrast[N];        ///< |n_sphere^2 - n_medium^2|
+    float relative_index[N];  ///< n_sphere / n_medium
+    float surface_index[N];   ///< at the opal's surface
+};
+
+/// One family of planes met at a given angle by light of one polarization: everything but the wavelength.
 struct BeamGeometry {
-    float cosine;    ///< |w . g|, direction of travel against the planes' normal
-    float g_per_nm;  ///< |G|
-    float epsilon;   ///< |eps_G|
-    float n_eff;
-    float block_nm;  ///< thickness of one coherent block along the normal
-    float blocks;    ///< how many of them the path through the grain crosses, at least 1
+    float cosine;        ///< |w . g|, direction of travel against the planes' normal
+    float g_per_nm;      ///< |G|
+    float form;          ///< |eps_G| over the contrast of permittivity
+    float block_nm;      ///< thickness of one coherent block along the normal
+    bool p_polarized;    ///< in the plane of incidence
+    float share = 1.0f;  ///< part of the path that lies in blocks which hold this family
 };
 
-/// Blocks of a path of length `chord_nm` through a grain whose coherent blocks are `coherence_nm` thick along the planes' normal:
-/// a shorter crossing is one thinner block.
-OPAL_HD inline void set_blocks(BeamGeometry& beam, float chord_nm, float coherence_nm) {
-    const float depth_nm = chord_nm * beam.cosine;
-    beam.block_nm = min_of(coherence_nm, depth_nm);
-    beam.blocks = max_of(1.0f, depth_nm / coherence_nm);
-}
-
-/// Reflection odds N = R / (1 - R) of a pile of incoherently stacked blocks, for every lane and both polarizations: elements 0..3
-/// are s, 4..7 are p. R = M r / (1 + (M - 1) r) is the same as N = M r / (1 - r), so a fraction x of the path has odds x N.
-struct PileOdds {
-    static constexpr int size = 2 * num_lanes;
-    float odds[size];
-
-    OPAL_HD float s(int lane) const { return odds[lane]; }
-    OPAL_HD float p(int lane) const { return odds[num_lanes + lane]; }
-    /// Reflectance averaged over the polarizations, at a fraction of the path.
-    OPAL_HD float reflectance(int lane, float fraction = 1.0f) const {
-        const float a = fraction * s(lane), b = fraction * p(lane);
-        return 0.5f * (a / (1.0f + a) + b / (1.0f + b));
-    }
-    /// Its derivative with respect to the fraction: the density of where on the path the light turns.
-    OPAL_HD float turning_density(int lane, float fraction) const {
-        const float a = 1.0f + fraction * s(lane), b = 1.0f + fraction * p(lane);
-        return 0.5f * (s(lane) / (a * a) + p(lane) / (b * b));
-    }
-};
-
-/// Fills the odds of a pile. Coupling kappa = pi |eps_G| C / (n lambda c), C = 1 (s) or |1 - 2 c^2| (p); detuning
-/// delta = 2 pi (n c / lambda - |G| / 2) = pi |G| (lambda_B / lambda - 1) (two-beam dynamical diffraction, Zachariasen 1945).
-/// More than an octave from the Bragg wavelength the two-beam picture (one strong G near its Bragg condition) does not hold, and
-/// grazing passes would get a coupling that grows without bound: nothing is reflected there. Returns false where that is so for
-/// every lane. The loops are free of branches and calls so that they vectorize; the few elements inside the band are mended
-/// afterwards.
-OPAL_HD inline bool pile_odds(const BeamGeometry& beam, const float* wavelength_nm, PileOdds& result) {
-    const float bragg_nm = 2.0f * beam.n_eff * beam.cosine / beam.g_per_nm;
-    const float coupling = pi_f * beam.epsilon * beam.block_nm / (beam.n_eff * beam.cosine);
-    const float p_factor = fabsf(1.0f - 2.0f * beam.cosine * beam.cosine);
-    float ratio[num_lanes];
+/// Rate (1/mm) at which light on its way through a pile of incoherently stacked blocks is turned by a family of planes, for every
+/// lane. A path of length l crosses M = l c / t blocks; walking back and forth between the two beams with the rate M r / (1 - r)
+/// / l gives the pile's reflectance M r / (1 + (M - 1) r) exactly. Coupling kappa = pi |eps_G| C / (n lambda c), C = 1 (s) or |1
+/// - 2 c^2| (p); detuning delta = 2 pi (n c / lambda - |G| / 2) = pi |G| (lambda_B / lambda - 1) (two-beam dynamical diffraction,
+/// Zachariasen 1945). More than an octave from the Bragg wavelength the two-beam picture (one strong G near its Bragg condition)
+/// does not hold, and grazing passes would get a coupling that grows without bound: nothing is reflected there. Rates saturate
+/// towards `max_rate_per_mm`, harmonically, so that light inside a band is not turned without end. Returns false where all are 0.
+/// The loops are free of branches and calls so that they vectorize; the few elements inside the band are mended afterwards.
+template <int N>
+OPAL_HD inline bool reflection_rates(const BeamGeometry& beam, const LaneOptics<N>& optics, float max_rate_per_mm,
+                                     float* rate_per_mm) {
+    const float bragg_over_n_nm = 2.0f * beam.cosine / beam.g_per_nm;
+    float ratio[N];
     bool any_near = false;
-    for (int i = 0; i < num_lanes; ++i) {
-        ratio[i] = bragg_nm / wavelength_nm[i];
+    for (int i = 0; i < N; ++i) {
+        ratio[i] = bragg_over_n_nm * optics.n_eff[i] / optics.wavelength_nm[i];
         any_near = any_near || (ratio[i] >= 0.5f && ratio[i] <= 2.0f);
     }
     if (!any_near) return false;
 
-    float kappa_t[PileOdds::size], delta_t[PileOdds::size], x2[PileOdds::size];
+    const float factor = beam.p_polarized ? fabsf(1.0f - 2.0f * beam.cosine * beam.cosine) : 1.0f;
+    const float coupling = pi_f * beam.form * factor * beam.block_nm / beam.cosine;
     const float detuning = pi_f * beam.g_per_nm * beam.block_nm;
+    const float blocks_per_mm = beam.share * beam.cosine * 1.0e6f / beam.block_nm;
+    float kappa_t[N], delta_t[N], x2[N];
     OPAL_SIMD
-    for (int i = 0; i < num_lanes; ++i) {
+    for (int i = 0; i < N; ++i) {
         const float near = ratio[i] >= 0.5f && ratio[i] <= 2.0f ? coupling : 0.0f;
-        kappa_t[i] = near / wavelength_nm[i];
-        kappa_t[num_lanes + i] = kappa_t[i] * p_factor;
+        kappa_t[i] = near * optics.contrast[i] / (optics.n_eff[i] * optics.wavelength_nm[i]);
         delta_t[i] = detuning * (ratio[i] - 1.0f);
-        delta_t[num_lanes + i] = delta_t[i];
     }
     OPAL_SIMD
-    for (int i = 0; i < PileOdds::size; ++i) {
+    for (int i = 0; i < N; ++i) {
         const float kappa2 = kappa_t[i] * kappa_t[i];
         x2[i] = delta_t[i] * delta_t[i] - kappa2;
         const float outside = x2[i] < band_edge_x2 ? band_edge_x2 : x2[i];
-        result.odds[i] = beam.blocks * kappa2 * sine_squared(sqrtf(outside)) / outside;
+        rate_per_mm[i] = blocks_per_mm * kappa2 * sine_squared(sqrtf(outside)) / outside;
     }
     float smallest = x2[0];
-    for (int i = 1; i < PileOdds::size; ++i) smallest = min_of(smallest, x2[i]);
+    for (int i = 1; i < N; ++i) smallest = min_of(smallest, x2[i]);
     if (smallest < band_edge_x2)
-        for (int i = 0; i < PileOdds::size; ++i)
-            if (x2[i] < band_edge_x2) result.odds[i] = beam.blocks * block_reflection_odds(kappa_t[i], delta_t[i]);
+        for (int i = 0; i < N; ++i)
+            if (x2[i] < band_edge_x2) rate_per_mm[i] = blocks_per_mm * block_reflection_odds(kappa_t[i], delta_t[i]);
+    OPAL_SIMD
+    for (int i = 0; i < N; ++i) rate_per_mm[i] *= max_rate_per_mm / (max_rate_per_mm + rate_per_mm[i]);
     return true;
 }
 

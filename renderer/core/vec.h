@@ -83,6 +83,11 @@ struct Quaternion {
     float x = 0.0f, y = 0.0f, z = 0.0f, w = 1.0f;
 
     OPAL_HD Quaternion conjugate() const { return {-x, -y, -z, w}; }
+    /// The rotation `other` followed by this one.
+    OPAL_HD Quaternion operator*(Quaternion other) const {
+        return {w * other.x + x * other.w + y * other.z - z * other.y, w * other.y - x * other.z + y * other.w + z * other.x,
+                w * other.z + x * other.y - y * other.x + z * other.w, w * other.w - x * other.x - y * other.y - z * other.z};
+    }
     OPAL_HD Vec3 rotate(Vec3 v) const {
         const Vec3 q{x, y, z};
         const Vec3 t = 2.0f * cross(q, v);

@@ -15,9 +15,10 @@ constexpr int tile_size = 16;
 
 void add_counters(PathCounters& sum, const PathCounters& part) {
     sum.diffractions += part.diffractions;
+    sum.turns_back += part.turns_back;
     sum.scatterings += part.scatterings;
     sum.grain_crossings += part.grain_crossings;
-    sum.renormalized_crossings += part.renormalized_crossings;
+    sum.multi_beam_stays += part.multi_beam_stays;
     sum.lost_paths += part.lost_paths;
     sum.truncated_paths += part.truncated_paths;
     sum.not_a_number += part.not_a_number;
@@ -28,6 +29,7 @@ struct TileSums {
     SpectrumTotals totals;
 };
 
+template <int N>
 void render_tile(const HostScene& scene, const EmbreeScene& intersector, int tile, int first_sample, int end_sample, Film& film,
                  TileSums& sums) {
     const SceneView& view = scene.view();
@@ -37,11 +39,19 @@ void render_tile(const HostScene& scene, const EmbreeScene& intersector, int til
         for (int x = x0; x < std::min(x0 + tile_size, view.width); ++x)
             for (int sample = first_sample; sample < end_sample; ++sample) {
                 const std::uint32_t pixel = std::uint32_t(y) * std::uint32_t(view.width) + std::uint32_t(x);
-                PathWavelengths wavelengths;
-                const PathResult result =
+                PathWavelengths<N> wavelengths;
+                const PathResult<N> result =
                     trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, sums.counters);
-                film.add(view.spectra, pixel, wavelengths, result, sums.totals);
+                film.add(view.spectra, pixel, film_sample(wavelengths, result), sums.totals);
             }
+}
+
+using TileRenderer = decltype(&render_tile<1>);
+
+/// The transport compiled for just as many lanes as are wanted.
+TileRenderer tile_renderer(int wavelengths) {
+    if (wavelengths == 1) return render_tile<1>;
+    return wavelengths <= 4 ? render_tile<4> : render_tile<8>;
 }
 
 /// Samples of the next pass: few at first, so that a picture is there early, then more, to keep the film's memory traffic low; no
@@ -63,6 +73,7 @@ RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector,
     std::vector<TileSums> sums(static_cast<std::size_t>(num_tiles));
     const double total_work = double(num_tiles) * limits.samples;
     std::atomic<std::int64_t> work_done = 0;
+    const TileRenderer render = tile_renderer(view.wavelengths);
     const Stopwatch watch;
     RenderOutcome outcome;
 
@@ -70,7 +81,7 @@ RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector,
         const int end = std::min(limits.samples, done + pass_size(done, watch.seconds(), limits.time_s));
         tbb::parallel_for(tbb::blocked_range<int>(0, num_tiles, 1), [&](const tbb::blocked_range<int>& range) {
             for (int tile = range.begin(); tile != range.end() && !interrupt_requested(); ++tile) {
-                render_tile(scene, intersector, tile, done, end, film, sums[std::size_t(tile)]);
+                render(scene, intersector, tile, done, end, film, sums[std::size_t(tile)]);
                 work_done += end - done;
                 const double by_time = limits.time_s > 0.0 ? watch.seconds() / limits.time_s : 0.0;
                 progress(std::min(1.0, std::max(double(work_done) / total_work, by_time)));

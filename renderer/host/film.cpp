@@ -38,37 +38,36 @@ Film::Film(int width, int height, bool spectral)
     if (spectral) spectra_.assign(pixels_.size() * num_bins, 0.0f);
 }
 
-void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const PathWavelengths& wavelengths, const PathResult& result,
-               SpectrumTotals& totals) {
+void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals) {
     double x = 0.0, y = 0.0, z = 0.0;
     double lost_x = 0.0, lost_y = 0.0, lost_z = 0.0;
-    std::array<double, num_lanes> in_bin = {};
-    std::array<int, num_lanes> bins = {};
-    for (int i = 0; i < wavelengths.count; ++i) {
-        const Vec3 observer = table_at(tables.observer, wavelengths.wavelength_nm[i]);
-        const double per_density = 1.0 / (double(wavelengths.pdf_per_nm[i]) * wavelengths.count);
-        const double radiance = double(result.radiance.v[i]) * per_density;
+    std::array<double, max_lanes> in_bin = {};
+    std::array<int, max_lanes> bins = {};
+    for (int i = 0; i < sample.count; ++i) {
+        const Vec3 observer = table_at(tables.observer, sample.wavelength_nm[i]);
+        const double per_density = 1.0 / (double(sample.pdf_per_nm[i]) * sample.count);
+        const double radiance = double(sample.radiance[i]) * per_density;
         x += radiance * double(observer.x);
         y += radiance * double(observer.y);
         z += radiance * double(observer.z);
-        bins[i] = spectral_bin(double(wavelengths.wavelength_nm[i]));
+        bins[i] = spectral_bin(double(sample.wavelength_nm[i]));
         in_bin[i] = radiance / bin_width_nm(bins[i]);
         totals.radiance[bins[i]] += in_bin[i];
-        const double truncated = double(result.truncated.v[i]) * per_density;
+        const double truncated = double(sample.truncated[i]) * per_density;
         totals.truncated[bins[i]] += truncated / bin_width_nm(bins[i]);
         totals.truncated_squared[bins[i]] +=
-            wavelengths.count * truncated * truncated / (bin_width_nm(bins[i]) * bin_width_nm(bins[i]));
-        const double lost = truncated * double(table_at(tables.white, wavelengths.wavelength_nm[i]));
+            sample.count * truncated * truncated / (bin_width_nm(bins[i]) * bin_width_nm(bins[i]));
+        const double lost = truncated * double(table_at(tables.white, sample.wavelength_nm[i]));
         lost_x += lost * double(observer.x);
         lost_y += lost * double(observer.y);
         lost_z += lost * double(observer.z);
         if (spectral_) spectra_[std::size_t(pixel) * num_bins + bins[i]] += float(in_bin[i]);
     }
     // Lanes of one sample can share a bin: squares are of the sample's whole contribution to it.
-    for (int i = 0; i < wavelengths.count; ++i) {
+    for (int i = 0; i < sample.count; ++i) {
         double whole = 0.0;
         bool first = true;
-        for (int j = 0; j < wavelengths.count; ++j) {
+        for (int j = 0; j < sample.count; ++j) {
             if (bins[j] != bins[i]) continue;
             if (j < i) first = false;
             whole += in_bin[j];

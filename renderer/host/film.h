@@ -27,10 +27,19 @@ struct SpectrumTotals {
     void add(const SpectrumTotals& other);
 };
 
-/// One sample's light per bin and in XYZ.
+/// One path's wavelengths and what it found at them.
 struct FilmSample {
-    double x = 0.0, y = 0.0, z = 0.0;
+    const float* wavelength_nm;
+    const float* pdf_per_nm;
+    const float* radiance;
+    const float* truncated;
+    int count;  ///< lanes in use, at most max_lanes
 };
+
+template <int N>
+FilmSample film_sample(const PathWavelengths<N>& wavelengths, const PathResult<N>& result) {
+    return {wavelengths.wavelength_nm, wavelengths.pdf_per_nm, result.radiance.v, result.truncated.v, wavelengths.count};
+}
 
 /// Accumulates samples per pixel: linear sRGB sums in double precision, sums of squares for the variance, counts, optional
 /// spectra.
@@ -39,8 +48,7 @@ class Film {
     Film(int width, int height, bool spectral);
 
     /// Adds one path's result to a pixel and to `totals`. Pixels may be filled from different threads, each from one at a time.
-    void add(const SpectrumTables& tables, std::uint32_t pixel, const PathWavelengths& wavelengths, const PathResult& result,
-             SpectrumTotals& totals);
+    void add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals);
 
     int width() const { return width_; }
     int height() const { return height_; }

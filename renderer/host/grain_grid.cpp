@@ -3,7 +3,11 @@
 
 #include <nanovdb/util/OpenToNanoVDB.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "formats/error.h"
+#include "formats/units.h"
 
 namespace opal {
 
@@ -24,6 +28,17 @@ GrainGridData::GrainGridData(const openvdb::Int32Grid& grain_id) : storage_(std:
 GrainGridData::~GrainGridData() = default;
 GrainGridData::GrainGridData(GrainGridData&&) noexcept = default;
 GrainGridData& GrainGridData::operator=(GrainGridData&&) noexcept = default;
+
+std::vector<float> grain_sizes_mm(const openvdb::Int32Grid& grain_id, std::size_t num_grains) {
+    std::vector<std::uint64_t> voxels(num_grains, 0);
+    for (auto value = grain_id.cbeginValueOn(); value; ++value)
+        if (*value > 0) voxels[std::size_t(*value) - 1] += value.getVoxelCount();
+    const double voxel_mm3 = grain_id.transform().voxelVolume();
+    std::vector<float> sizes_mm;
+    for (const std::uint64_t count : voxels)
+        sizes_mm.push_back(float(std::cbrt(6.0 / units::pi * double(std::max<std::uint64_t>(1, count)) * voxel_mm3)));
+    return sizes_mm;
+}
 
 GrainField GrainGridData::field() const {
     return storage_->field;

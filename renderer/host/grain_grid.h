@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 
 #include <memory>
+#include <vector>
 
 #include "renderer/core/grain_walk.h"
 
@@ -24,5 +25,9 @@ class GrainGridData {
     struct Storage;
     std::unique_ptr<Storage> storage_;
 };
+
+/// Diameter (mm) of a ball as large as each grain, from the number of its voxels; element g - 1 is grain g's. A grain without
+/// voxels is given one voxel's.
+std::vector<float> grain_sizes_mm(const openvdb::Int32Grid& grain_id, std::size_t num_grains);
 
 }  // namespace opal

@@ -10,7 +10,9 @@
 #include "formats/field_summary.h"
 #include "formats/opal_asset.h"
 #include "formats/units.h"
+#include "renderer/core/mosaic.h"
 #include "renderer/host/opal_surface.h"
+#include "renderer/host/stacking.h"
 
 namespace opal {
 namespace {
@@ -19,24 +21,56 @@ Vec3 to_vec3(const std::array<double, 3>& v) {
     return {float(v[0]), float(v[1]), float(v[2])};
 }
 
-/// The families a grain crossing tests: all inside the limiting sphere, or the strongest where there are more than a path can
-/// mark.
-int choose_pairs(const CrystalParameters& crystal, PlanePair* chosen, int& reciprocal_points, std::vector<std::string>& notices) {
-    std::vector<PlanePair> pairs(max_plane_pairs);
-    const int inside = reciprocal_pairs(crystal, units::wavelength_min_nm, pairs.data(), max_plane_pairs);
-    reciprocal_points = 2 * inside + 1;
-    pairs.resize(std::size_t(std::min(inside, max_plane_pairs)));
-    std::erase_if(pairs, [](const PlanePair& pair) { return !(pair.epsilon > 0.0f); });
+/// The families that planes of the crystal offer: all inside the limiting sphere, or the strongest where there are more than a
+/// stay in a grain can mark.
+int choose_pairs(const OpalConstants& constants, PlanePair* chosen, int& reciprocal_points, std::vector<std::string>& notices) {
+    const CrystalParameters crystal{constants.sphere_diameter_nm, constants.n_sphere.at(units::wavelength_min_nm),
+                                    constants.n_medium.at(units::wavelength_min_nm)};
+    std::vector<PlanePair> pairs = stacked_pairs(crystal, constants.stacking_fault_probability, units::wavelength_min_nm);
+    reciprocal_points = 2 * int(pairs.size()) + 1;
+    const std::size_t inside = pairs.size();
+    std::erase_if(pairs, [](const PlanePair& pair) { return !(pair.form > 0.0f); });
     if (pairs.size() > max_tested_pairs) {
-        std::stable_sort(pairs.begin(), pairs.end(),
-                         [](const PlanePair& a, const PlanePair& b) { return a.epsilon > b.epsilon; });
+        std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.form > b.form; });
         pairs.resize(max_tested_pairs);
         notices.push_back(
             fmt::format("{} families of planes can diffract visible light; the {} strongest are used (next: {:.2g} of the first)",
-                        inside, max_tested_pairs, double(pairs.back().epsilon) / double(pairs.front().epsilon)));
+                        inside, max_tested_pairs, double(pairs.back().form) / double(pairs.front().form)));
     }
     std::copy(pairs.begin(), pairs.end(), chosen);
     return static_cast<int>(pairs.size());
+}
+
+OpticalTables optical_tables(const OpalConstants& constants, Dispersion dispersion) {
+    OpticalTables tables;
+    const auto n_eff = [](double n_sphere, double n_medium) {
+        return float(fcc_filling * n_sphere + (1.0 - fcc_filling) * n_medium);
+    };
+    const float mean = n_eff(constants.n_sphere.at(sodium_d_nm), constants.n_medium.at(sodium_d_nm));
+    for (int i = 0; i < spectrum_samples; ++i) {
+        const double wavelength_nm = dispersion == Dispersion::none ? sodium_d_nm : units::wavelength_min_nm + i;
+        const double n_sphere = constants.n_sphere.at(wavelength_nm), n_medium = constants.n_medium.at(wavelength_nm);
+        tables.n_eff.push_back(n_eff(n_sphere, n_medium));
+        tables.contrast.push_back(float(std::abs(n_sphere * n_sphere - n_medium * n_medium)));
+        tables.relative_index.push_back(float(n_sphere / n_medium));
+        tables.surface_index.push_back(dispersion == Dispersion::full ? tables.n_eff.back() : mean);
+        tables.surface_disperses = tables.surface_disperses || tables.surface_index.back() != tables.surface_index.front();
+    }
+    return tables;
+}
+
+Diffraction transport_model(DiffractionModel model) {
+    switch (model) {
+        case DiffractionModel::ewald_fresnel:
+            return Diffraction::ewald_fresnel;
+        case DiffractionModel::laue:
+            return Diffraction::laue;
+        case DiffractionModel::none:
+            return Diffraction::none;
+        case DiffractionModel::two_beam:
+            break;
+    }
+    return Diffraction::two_beam;
 }
 
 /// The transport knows one value of each coefficient in the whole opal.
@@ -57,15 +91,6 @@ MeanCoefficients mean_coefficients(const OpalAsset& asset, const std::string& fi
     return {mean(asset.sigma_a_scale, grid_names::sigma_a_scale, 1.0),
             mean(asset.sigma_s_rayleigh_400nm, grid_names::sigma_s_rayleigh, asset.constants.sigma_s_rayleigh_400nm_per_mm),
             mean(asset.sigma_s_mie, grid_names::sigma_s_mie, asset.constants.sigma_s_mie_per_mm)};
-}
-
-void notice_unused_disorder(const OpalConstants& constants, const std::string& file, std::vector<std::string>& notices) {
-    if (constants.stacking_fault_probability > 0.0)
-        notices.push_back(fmt::format("{}: stacking_fault_probability {:.4g} is not used by the renderer yet", file,
-                                      constants.stacking_fault_probability));
-    if (constants.mosaic_spread_deg > 0.0)
-        notices.push_back(
-            fmt::format("{}: mosaic_spread_deg {:.4g} is not used by the renderer yet", file, constants.mosaic_spread_deg));
 }
 
 }  // namespace
@@ -125,11 +150,12 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
         throw InputError(file +
                          ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
     const MeanCoefficients means = mean_coefficients(asset, file, notices);
-    notice_unused_disorder(asset.constants, file, notices);
 
     OpalView& opal = view_.opal;
     opal.present = true;
-    opal.diffraction = settings.diffraction == DiffractionModel::two_beam;
+    opal.diffraction = transport_model(settings.diffraction);
+    opal.ewald_tolerance = float(settings.ewald_tolerance);
+    opal.max_odds = float(settings.max_odds);
     opal.world_from_object = object_transform(object);
 
     meshes_.push_back(surface_from_level_set(*asset.shape, file));
@@ -142,17 +168,29 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
 
     recipe_toml_ = asset.recipe_toml;
     const OpalConstants& constants = asset.constants;
-    const CrystalParameters crystal{constants.sphere_diameter_nm, constants.n_sphere.at(sodium_d_nm),
-                                    constants.n_medium.at(sodium_d_nm)};
-    opal.n_eff = float(effective_index(crystal));
-    opal.num_pairs = choose_pairs(crystal, opal.pairs, reciprocal_points_, notices);
+    optics_ = optical_tables(constants, settings.dispersion);
+    opal.n_eff = optics_.n_eff.data();
+    opal.contrast = optics_.contrast.data();
+    opal.relative_index = optics_.relative_index.data();
+    opal.surface_index = optics_.surface_index.data();
+    opal.surface_disperses = optics_.surface_disperses;
+    opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
     opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
-    for (int i = 0; i < spectrum_samples; ++i)
-        sigma_a_per_mm_.push_back(float(means.sigma_a_scale * constants.sigma_a_per_mm.at(units::wavelength_min_nm + i)));
-    opal.sigma_a_per_mm = sigma_a_per_mm_.data();
-    opal.sigma_s_rayleigh_400nm_per_mm = float(means.sigma_s_rayleigh_400nm_per_mm);
-    opal.sigma_s_mie_per_mm = float(means.sigma_s_mie_per_mm);
-    opal.mie_asymmetry = float(constants.mie_asymmetry);
+    if (constants.mosaic_spread_deg > 0.0)
+        opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
+    grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
+    opal.grain_size_mm = grain_size_mm_.data();
+
+    for (int i = 0; i < spectrum_samples; ++i) {
+        const double wavelength_nm = units::wavelength_min_nm + i;
+        sigma_a_per_mm_.push_back(float(means.sigma_a_scale * constants.sigma_a_per_mm.at(wavelength_nm)));
+        const SampledSpectrum& shape = constants.sigma_s_mie_shape;
+        sigma_s_mie_per_mm_.push_back(float(means.sigma_s_mie_per_mm * (shape.value.empty() ? 1.0 : shape.at(wavelength_nm))));
+    }
+    opal.medium.sigma_a_per_mm = sigma_a_per_mm_.data();
+    opal.medium.sigma_s_rayleigh_400nm_per_mm = float(means.sigma_s_rayleigh_400nm_per_mm);
+    opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
+    opal.medium.mie_asymmetry = float(constants.mie_asymmetry);
 }
 
 void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {

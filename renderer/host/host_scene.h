@@ -14,6 +14,12 @@
 
 namespace opal {
 
+/// The opal's optical constants in steps of 1 nm.
+struct OpticalTables {
+    std::vector<float> n_eff, contrast, relative_index, surface_index;
+    bool surface_disperses = false;
+};
+
 /// Everything a scene needs in memory, and the plain view of it that the transport reads. Not movable: the view points inside.
 class HostScene {
   public:
@@ -43,7 +49,9 @@ class HostScene {
     std::vector<MeshView> mesh_views_;
     std::unique_ptr<GrainGridData> grains_;
     std::vector<Quaternion> orientations_;
-    std::vector<float> sigma_a_per_mm_;
+    std::vector<float> grain_size_mm_;
+    OpticalTables optics_;
+    std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
     int reciprocal_points_ = 0;
     std::string recipe_toml_;
     SceneView view_;

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/laue_rates.h"
+#include "renderer/core/mosaic.h"
+#include "renderer/core/path_random.h"
+#include "renderer/core/scene_view.h"
+
+/// A stay in one grain. Light that a family of planes turns meets the same family again at the same angle, is turned back, and so
+/// on: a random walk between beams, which ends where the light leaves the grain or scatters. What is random about the grain
+/// itself is drawn once per stay.
+namespace opal {
+
+/// Turning rates of every family that matters along one direction.
+template <int N>
+struct GrainRates {
+    float rate_per_mm[max_tested_pairs][N];
+    int pair[max_tested_pairs];
+    int count = 0;
+    float total_per_mm[N];
+    Vec3 direction;  ///< world
+};
+
+template <int N>
+struct GrainVisit {
+    int grain = 0;                   ///< 0: not known yet
+    bool fresh = true;               ///< nothing below is drawn yet
+    bool at_boundary = false;        ///< the stay begins where the light comes in from outside the grain
+    float block_nm = 0.0f;           ///< thickness of a coherent block
+    uint64_t p_polarized = 0;        ///< a bit per family: how the light is polarized towards it
+    float max_rate_per_mm = 0.0f;    ///< where rates saturate
+    Quaternion object_from_lattice;  ///< with the tilt of this stay
+    GrainRates<N> rates[2];          ///< along the present direction and along the one before
+    int current = 0;                 ///< which of the two is the present one
+    bool present_known = false;
+    int link = -1;  ///< family that turns one into the other; -1: the other is not known
+
+    OPAL_HD const GrainRates<N>& present() const { return rates[current]; }
+    /// The next flight starts a new stay: after scattering, or at the surface.
+    OPAL_HD void renew() {
+        fresh = true;
+        at_boundary = false;
+    }
+    OPAL_HD void enter(int next_grain) {
+        grain = next_grain;
+        fresh = true;
+        at_boundary = true;
+    }
+};
+
+/// Mean thickness times a triangular factor in [0.5, 1.5]: the spread of block sizes washes out fringes that no real opal shows.
+OPAL_HD inline float draw_coherence_nm(float mean_nm, PathRandom& random) {
+    return mean_nm * (0.5f + 0.5f * (random.next() + random.next()));
+}
+
+template <int N>
+OPAL_HD inline void begin_visit(const OpalView& opal, GrainVisit<N>& visit, PathRandom& random) {
+    const float size_mm = opal.grain_size_mm[visit.grain - 1] * opal.world_from_object.scale;
+    visit.block_nm = min_of(draw_coherence_nm(opal.coherence_nm, random), size_mm * 1.0e6f);
+    visit.p_polarized = (uint64_t(random.next_bits()) << 32) | random.next_bits();
+    visit.max_rate_per_mm = opal.max_odds / size_mm;
+    visit.object_from_lattice = opal.orientations[visit.grain - 1];
+    if (opal.mosaic_kappa > 0.0f) {
+        const float u1 = random.next(), u2 = random.next(), u3 = random.next(), u4 = random.next();
+        visit.object_from_lattice = visit.object_from_lattice * sample_mosaic_tilt(opal.mosaic_kappa, u1, u2, u3, u4);
+    }
+    visit.fresh = false;
+    visit.present_known = false;
+    visit.link = -1;
+}
+
+/// Rates along `direction` (world; `lattice_direction` in the lattice's frame).
+template <int N>
+OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& optics, const GrainVisit<N>& visit, Vec3 direction,
+                                   Vec3 lattice_direction, GrainRates<N>& rates) {
+    rates.count = 0;
+    rates.direction = direction;
+    for (int i = 0; i < N; ++i) rates.total_per_mm[i] = 0.0f;
+    if (opal.diffraction == Diffraction::ewald_fresnel) return;  // turns at boundaries alone
+    for (int k = 0; k < opal.num_pairs; ++k) {
+        const PlanePair& pair = opal.pairs[k];
+        const float cosine = fabsf(dot(lattice_direction, pair.normal));
+        if (cosine < 1.0e-4f) continue;
+        const BeamGeometry beam{
+            cosine,    pair.g_per_nm, pair.form, min_of(visit.block_nm, pair.coherence_nm), ((visit.p_polarized >> k) & 1u) != 0,
+            pair.share};
+        float* rate_per_mm = rates.rate_per_mm[rates.count];
+        const bool any = opal.diffraction == Diffraction::laue
+                             ? laue_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm)
+                             : reflection_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm);
+        if (!any) continue;
+        for (int i = 0; i < N; ++i) rates.total_per_mm[i] += rate_per_mm[i];
+        rates.pair[rates.count++] = k;
+    }
+}
+
+/// Which family turns the hero, given that one does: chosen by its rate. Returns an index into the rates.
+template <int N>
+OPAL_HD inline int choose_family(const GrainRates<N>& rates, float u) {
+    float rest = u * rates.total_per_mm[0];
+    int chosen = -1;
+    for (int i = 0; i < rates.count; ++i) {
+        const float rate = rates.rate_per_mm[i][0];
+        if (rate > 0.0f) chosen = i;  // rounding can carry `rest` past the last family; never onto one that does not turn
+        if (rest < rate) break;
+        rest -= rate;
+    }
+    return chosen;
+}
+
+/// Turns the visit's present direction by family `k`: back to the direction before if that family led here, else into a new one.
+/// Returns the new direction (world).
+template <int N>
+OPAL_HD inline Vec3 turn_visit(const OpalView& opal, GrainVisit<N>& visit, int k) {
+    if (k == visit.link) {
+        visit.current = 1 - visit.current;
+        return visit.present().direction;
+    }
+    const Vec3 normal = opal.world_from_object.world_from_local_direction(visit.object_from_lattice.rotate(opal.pairs[k].normal));
+    const Vec3 turned = normalize(mirror(visit.present().direction, normal));
+    visit.current = 1 - visit.current;
+    visit.present_known = false;
+    visit.link = k;
+    return turned;
+}
+
+}  // namespace opal

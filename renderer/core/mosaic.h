@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/vec.h"
+
+/// Mosaic spread: the lattice of a grain tilts a little from place to place. Tilts follow the de la Vallee Poussin orientation
+/// density (Schaeben, "A simple standard orientation density function: the hyperspherical de la Vallee Poussin kernel", phys.
+/// stat. sol. (b) 200, 1997), proportional to cos^(2 kappa) of half the angle of rotation: the one whose plane normals have a
+/// density in closed form too, so that a light can be connected to.
+namespace opal {
+
+/// kappa for a standard deviation of the tilt of `spread_rad` about each axis: near zero the density of a normal is
+/// exp(-kappa theta^2 / 4).
+OPAL_HD inline float mosaic_exponent(float spread_rad) {
+    return 2.0f / (spread_rad * spread_rad);
+}
+
+/// Draws a tilt (a rotation) with four uniform numbers. In Hopf's coordinates of the unit quaternions, w = sqrt(s) cos(phi) and
+/// z = sqrt(s) sin(phi), the density splits into s^kappa, inverted in closed form, and cos^(2 kappa) phi, whose tangent is
+/// Student's t with 2 kappa + 1 degrees of freedom up to scale (Bailey, "Polar generation of random variates with the
+/// t-distribution", Math. Comp. 62, 1994).
+OPAL_HD inline Quaternion sample_mosaic_tilt(float kappa, float u1, float u2, float u3, float u4) {
+    // 1 - s and the excess of Bailey's power, both free of cancellation where the spread is small.
+    const float rest = -expm1f(logf(1.0f - u1) / (kappa + 1.0f));
+    const float s = 1.0f - rest;
+    const float tangent = sqrtf(expm1f(-2.0f * logf(1.0f - u2) / (2.0f * kappa + 1.0f))) * cosf(2.0f * pi_f * u3);
+    const float cosine = 1.0f / sqrtf(1.0f + tangent * tangent);
+    const float azimuth_rad = 2.0f * pi_f * u4;
+    const float radius = sqrtf(max_of(0.0f, rest));
+    return {radius * cosf(azimuth_rad), radius * sinf(azimuth_rad), sqrtf(s) * cosine * tangent, sqrtf(s) * cosine};
+}
+
+/// Density (1/sr) of a plane normal at `cosine` to its mean direction.
+OPAL_HD inline float mosaic_normal_density(float kappa, float cosine) {
+    return (kappa + 1.0f) / (4.0f * pi_f) * expf(kappa * logf(max_of(1.0e-30f, 0.5f * (1.0f + cosine))));
+}
+
+/// Density (1/sr) of the direction into which planes with mean normal `normal` turn light that travels along `direction`, given
+/// that they turn it: the half vector of the two directions is the tilted normal, and a mirrored direction moves 4 |w.g| times as
+/// fast as the normal (in solid angle). Either sense of the normal counts.
+OPAL_HD inline float mosaic_direction_density(float kappa, Vec3 normal, Vec3 direction, Vec3 turned) {
+    const Vec3 half = normalize(turned - direction);
+    const float cosine = dot(half, normal);
+    const float density = mosaic_normal_density(kappa, cosine) + mosaic_normal_density(kappa, -cosine);
+    return density / (4.0f * max_of(1.0e-12f, fabsf(dot(direction, half))));
+}
+
+}  // namespace opal
