@@ -90,7 +90,7 @@ void run_reflectance(const ReflectanceFlags& flags) {
     const ReflectanceSetup setup = make_setup(flags);
     const std::vector<double> angles_deg = parse_values("--angle-deg", flags.angle_deg, 0.0, flag_angle_max_deg);
     const std::vector<double> wavelengths_nm =
-        parse_values("--wavelength-nm", flags.wavelength_nm, flag_wavelength_min_nm, flag_wavelength_max_nm);
+        parse_wavelengths_nm(flags.wavelength_nm, setup.crystal.n_sphere, setup.crystal.n_medium);
     if (!flags.output.empty()) require_writable(flags.output);
     const std::string header = "wavelength_nm,reflectance_s,reflectance_p,reflectance";
     CsvTable table(angles_deg.size() > 1 ? "angle_deg," + header : header);

@@ -156,7 +156,8 @@ TEST(OpticsCommand, WhatIsWrongIsNamed) {
     refused("bragg --sphere-diameter-nm 5", "allowed: 10 to 10000");
     refused("bragg --chart chart.png", "needs ranges in both");
     refused("bragg --sphere-diameter-nm 200,300 --chart chart.jpg", "must end in .png");
-    refused("mie --wavelength-nm 100", "allowed: 200 to 2500");
+    refused("mie --n-sphere silica --wavelength-nm 100", "allowed: 200 to 2500");
+    refused("reflectance --layers 3 --wavelength-nm 0", "--wavelength-nm 0: 0 is out of range");
     refused("mie --phase 190", "--phase 190");
     refused("color " + output, "out.csv: no such file");
     refused("color " + output + " --illuminant F2", "--illuminant F2: not known");
