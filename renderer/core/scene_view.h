@@ -20,7 +20,7 @@ struct MeshView {
 };
 
 struct DiffuseMaterial {
-    Rgb albedo;
+    UpsampledColor albedo;
 };
 
 /// How lattice planes turn light.

@@ -13,6 +13,7 @@
 #include "renderer/core/mosaic.h"
 #include "renderer/host/opal_surface.h"
 #include "renderer/host/stacking.h"
+#include "renderer/host/upsampler.h"
 
 namespace opal {
 namespace {
@@ -93,6 +94,10 @@ MeanCoefficients mean_coefficients(const OpalAsset& asset, const std::string& fi
             mean(asset.sigma_s_mie, grid_names::sigma_s_mie, asset.constants.sigma_s_mie_per_mm)};
 }
 
+SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
+    return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
+}
+
 }  // namespace
 
 Camera make_camera(const CameraDescription& description, int width, int height) {
@@ -113,9 +118,12 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
-    : spectra_(make_spectrum_tables()), environment_(make_environment(description.environment)) {
+    : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
+                                     description.render.sampler == SamplerKind::independent})),
+      environment_(make_environment(description.environment, description.color.upsampling)) {
     for (const MaterialDescription& material : description.materials)
-        materials_.push_back({{float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])}});
+        materials_.push_back({upsample_reflectance(
+            spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])})});
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
             add_opal(object, description.opal, notices);
@@ -190,7 +198,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     opal.medium.sigma_a_per_mm = sigma_a_per_mm_.data();
     opal.medium.sigma_s_rayleigh_400nm_per_mm = float(means.sigma_s_rayleigh_400nm_per_mm);
     opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
-    opal.medium.mie_asymmetry = float(constants.mie_asymmetry);
+    if (means.sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
+    opal.medium.mie_phase = mie_phase_.view();
 }
 
 void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "color_bench.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -41,12 +42,18 @@ int run_bench(int argc, char** argv) {
     CLI::App* const modeler = app.add_subcommand("modeler", "opal-model: labelling, builds, memory (some minutes)");
     modeler->add_option("-o,--output", arguments.folder, "folder for modeler.csv")->required()->type_name("DIR");
     modeler->add_flag("--quick", arguments.quick, "an eighth of the voxels (about a minute)");
+    CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
+    color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
         return app.exit(request);
     } catch (const CLI::ParseError& error) {
         throw opal::InputError(fmt::format("{} (see opal-bench --help)", error.what()));
+    }
+    if (color->parsed()) {
+        opal::bench_color(arguments.folder);
+        return 0;
     }
     return run_modeler(arguments);
 }
