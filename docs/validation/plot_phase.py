@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Lorenz-Mie against the published tables, as a Markdown table, and phase functions of the crystal's defects beside the closed forms
+"""Lorenz-Mie against the published tables and the renderer's tables against the series, as Markdown, and phase functions of the crystal's defects beside the closed forms
 of the same mean cosine, as phase_functions.png beside this file. Needs matplotlib (Debian: python3-matplotlib).
 
     docs/validation/plot_phase.py [--bin build/release/bin]
@@ -33,18 +33,27 @@ def mie(program, index, *arguments):
     return {name: [float(row[name]) for row in rows] for name in rows[0]}
 
 
-def published_cases(tests):
-    """What the unit test records: index, size parameter, published and found Q_sca and g of each case."""
+def recorded(tests, name):
+    """What a unit test records, by key."""
     with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder) / "mie.json"
-        subprocess.run([tests, "--gtest_filter=LorenzMie.Wiscombe1979", f"--gtest_output=json:{report}"], check=True,
-                       capture_output=True)
+        report = pathlib.Path(folder) / "report.json"
+        subprocess.run([tests, f"--gtest_filter={name}", f"--gtest_output=json:{report}"], check=True, capture_output=True)
         test = json.loads(report.read_text(encoding="utf-8"))["testsuites"][0]["testsuite"][0]
+    return {key: test[key].split() for key in sorted(test) if key.startswith(("miev0_", "page_a22_", "table_"))}
+
+
+def published_cases(tests):
     print("| case | index | x | Q_sca published | found | g published | found |\n|---|---|---|---|---|---|---|")
-    for name in sorted(key for key in test if key.startswith(("miev0_", "page_a22_"))):
-        real, imaginary, x, q, g, q_found, g_found = test[name].split()
+    for name, (real, imaginary, x, q, g, q_found, g_found) in recorded(tests, "LorenzMie.Wiscombe1979").items():
         index = real if float(imaginary) == 0.0 else f"{real} + {imaginary} i"
         print(f"| {name.replace('_', ' ')} | {index} | {x} | {q} | {q_found} | {g} | {g_found} |")
+
+
+def phase_tables(tests):
+    print("\n| defect | nodes | largest deviation | mean cosine | light misplaced between wavelengths |\n|---|---|---|---|---|")
+    for name, (nodes, deviation, mean_cosine, misplaced) in recorded(tests, "MiePhaseTable.HoldsTheSeries").items():
+        _, diameter, particle = name.split("_")
+        print(f"| {particle}, {int(diameter)} nm | {nodes} | {deviation} | {mean_cosine} | {misplaced} |")
 
 
 def solve(mean_cosine, value):
@@ -104,6 +113,7 @@ def main():
     parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/release/bin"), help="folder of the programs")
     folder = parser.parse_args().bin
     published_cases(folder / "opal_formats_tests")
+    phase_tables(folder / "opal_renderer_tests")
     phase_functions(folder / "opal-optics")
 
 
