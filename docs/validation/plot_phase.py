@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Lorenz-Mie against the published tables and the renderer's tables against the series, as Markdown, and phase functions of the crystal's defects beside the closed forms
-of the same mean cosine, as phase_functions.png beside this file. Needs matplotlib (Debian: python3-matplotlib).
+"""Lorenz-Mie against the published tables and the renderer's tables against the series, as Markdown; phase functions of the
+crystal's defects beside the closed forms of the same mean cosine, as phase_functions.png beside this file. Needs matplotlib
+(Debian: python3-matplotlib).
 
     docs/validation/plot_phase.py [--bin build/release/bin]
 """
