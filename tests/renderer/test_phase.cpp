@@ -4,6 +4,7 @@
 #include "chi_square.h"
 #include "formats/opal_asset.h"
 #include "formats/units.h"
+#include "renderer/core/medium.h"
 #include "renderer/core/phase_function.h"
 #include "renderer/host/phase_function.h"
 
@@ -261,6 +262,39 @@ TEST(MiePhaseTable, ConstantsNameTheParticle) {
                 1.0e-4);
     constants.mie_particle_diameter_nm = 60.0;
     EXPECT_EQ(crystal_defect(constants).diameter_nm, 60.0);
+}
+
+/// The hero draws from its own phase function; weighted by their ratios, its directions have each companion's mean cosine.
+TEST(MiePhaseTable, CompanionsSeeTheirOwn) {
+    const PhaseTable table = make_mie_phase_table(defect_of(250.0, MieParticle::vacancy));
+    MediumView view;
+    view.mie_phase = {PhaseKind::table, 0.0f, 0.0f, table.view()};
+    const PathWavelengths<4> wavelengths{{500.0f, 617.5f, 740.0f, 390.0f}, {}, 4};
+    LaneMedium<4> medium;
+    medium.sigma_mie = Lanes<4>::all(1.0f);
+    const Vec3 direction = normalize({0.2f, 0.3f, -0.9f});
+    constexpr int draws = 300'000;
+    double sum[4] = {}, square_sum[4] = {}, ratio_sum[4] = {};
+    for (int i = 0; i < draws; ++i) {
+        PathRandom random(1, 7, std::uint32_t(i));
+        LaneWeights<4> weights;
+        const double cosine = double(dot(direction, scatter_direction(view, wavelengths, medium, direction, weights, random)));
+        for (int lane = 0; lane < 4; ++lane) {
+            const double value = double(weights.ratio.v[lane]) * cosine;
+            sum[lane] += value;
+            square_sum[lane] += value * value;
+            ratio_sum[lane] += double(weights.ratio.v[lane]);
+        }
+    }
+    for (int lane = 0; lane < 4; ++lane) {
+        const double mean = sum[lane] / draws;
+        const double standard_error = std::sqrt((square_sum[lane] / draws - mean * mean) / draws);
+        EXPECT_NEAR(mean, table.mean_cosine(double(wavelengths.wavelength_nm[lane])), 4.0 * standard_error) << lane;
+        EXPECT_LT(standard_error, 4.0e-3) << lane;
+        EXPECT_NEAR(ratio_sum[lane] / draws, 1.0, 0.02) << lane;
+    }
+    // Their mean cosines differ by far more than that.
+    EXPECT_GT(table.mean_cosine(390.0) - table.mean_cosine(740.0), 0.2);
 }
 
 }  // namespace

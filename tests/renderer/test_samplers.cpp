@@ -5,7 +5,6 @@
 #include "formats/units.h"
 #include "renderer/core/camera.h"
 #include "renderer/core/medium.h"
-#include "renderer/core/mosaic.h"
 #include "renderer/core/surface_scattering.h"
 #include "renderer/host/environment_map.h"
 
@@ -65,25 +64,6 @@ TEST(Samplers, FlightThroughAMedium) {
                 return SamplerPoint<1>{double(MediumFlight<1>(medium, random).advance(3.0e38f, weights))};
             },
             [&](SamplerPoint<1> t) { return double(sigma_s_per_mm) * std::exp(-double(sigma_s_per_mm) * t[0]); }));
-    }
-}
-
-/// Where a tilt takes a plane's normal: angle to its mean direction and azimuth.
-TEST(Samplers, MosaicTilt) {
-    const Vec3 mean = normalize({0.4f, -0.7f, 0.2f});
-    const Frame frame(mean);
-    for (const float spread_rad : {0.02f, 0.3f}) {
-        const float kappa = mosaic_exponent(spread_rad);
-        EXPECT_TRUE(check_sampler(
-            fmt::format("mosaic tilt of {}", spread_rad),
-            SamplerDomain<2>{{0.0, -units::pi}, {8.0 * double(spread_rad), units::pi}, {32, 16}},
-            [&](SamplerRandom& random) {
-                const float u1 = random.next(), u2 = random.next(), u3 = random.next();
-                const Vec3 normal = sample_mosaic_tilt(kappa, u1, u2, u3, random.next()).rotate(mean);
-                const double x = double(dot(normal, frame.tangent)), y = double(dot(normal, frame.bitangent));
-                return SamplerPoint<2>{std::atan2(std::hypot(x, y), double(dot(normal, mean))), std::atan2(y, x)};
-            },
-            [&](SamplerPoint<2> p) { return std::sin(p[0]) * double(mosaic_normal_density(kappa, float(std::cos(p[0])))); }));
     }
 }
 
