@@ -78,12 +78,30 @@ TEST(AliasTable, WavelengthsFollowTheLightTimesTheResponse) {
                     },
                     density, 360.0, 830.0, 200'000, 47))
                     << temperature_k << " K, lane " << lane << (alias ? ", alias" : ", inversion");
-            float pdf = 0.0f;
             for (const float u : {0.0f, 0.123f, 0.5f, 0.99999994f}) {
-                const float wavelength_nm = sample_wavelength(tables.view(), u, pdf);
-                EXPECT_EQ(pdf, tables.pdf[std::size_t(wavelength_nm - 360.0f)]);
+                const PathWavelengths<max_lanes> drawn = sample_wavelengths<max_lanes>(tables.view(), u, max_lanes);
+                for (int lane = 0; lane < max_lanes; ++lane)
+                    EXPECT_EQ(drawn.pdf_per_nm[lane], tables.pdf[std::size_t(drawn.wavelength_nm[lane] - 360.0f)]);
             }
         }
+}
+
+/// Whichever way the hero is drawn, its companions cut the density into equal shares.
+TEST(AliasTable, CompanionsAreSpreadEvenly) {
+    SpectrumTableOptions options;
+    options.alias = true;
+    const SpectrumTablesData tables = make_spectrum_tables(options);
+    const auto place = [&](float wavelength_nm) {
+        const std::size_t i = std::size_t(wavelength_nm - 360.0f);
+        return tables.cdf[i] + (wavelength_nm - 360.0f - float(i)) * tables.pdf[i];
+    };
+    for (const float u : {0.02f, 0.31f, 0.77f}) {
+        const PathWavelengths<4> drawn = sample_wavelengths<4>(tables.view(), u, 4);
+        for (int lane = 1; lane < 4; ++lane) {
+            const float turn = place(drawn.wavelength_nm[lane]) - place(drawn.wavelength_nm[0]) + 1.0f;
+            EXPECT_NEAR(turn - std::floor(turn), 0.25f * float(lane), 1e-5f);
+        }
+    }
 }
 
 /// Inversion keeps the order of the numbers, and so their strata; the alias table does not.
@@ -93,9 +111,9 @@ TEST(AliasTable, OnlyInversionIsMonotone) {
         options.alias = alias;
         const SpectrumTablesData tables = make_spectrum_tables(options);
         bool monotone = true;
-        float previous = 0.0f, pdf = 0.0f;
+        float previous = 0.0f;
         for (int i = 0; i < 1000; ++i) {
-            const float wavelength_nm = sample_wavelength(tables.view(), (float(i) + 0.5f) / 1000.0f, pdf);
+            const float wavelength_nm = sample_wavelengths<1>(tables.view(), (float(i) + 0.5f) / 1000.0f, 1).wavelength_nm[0];
             monotone &= wavelength_nm >= previous;
             previous = wavelength_nm;
         }
