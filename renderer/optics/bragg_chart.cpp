@@ -17,6 +17,8 @@ namespace {
 constexpr int plot_width = 720, plot_height = 480, left = 90, top = 60, right = 30, bottom = 80;
 constexpr int text_px = 17, tick_px = 6;
 constexpr std::array<float, 3> ink = {0.1f, 0.1f, 0.1f}, no_peak = {0.6f, 0.6f, 0.6f};
+/// Colours whose strongest linear component is weaker than this, at the ends of the spectrum, fade in proportion.
+constexpr double faintest_full_brightness = 0.1;
 
 void fill(Image& image, int x, int y, int width, int height, const std::array<float, 3>& color) {
     for (int j = y; j < y + height; ++j)
@@ -30,7 +32,8 @@ std::vector<double> round_ticks(double low, double high, int wanted) {
     for (const double factor : {5.0, 2.0, 1.0})
         if (factor * decade >= least * (1.0 - 1.0e-9)) step = factor * decade;
     std::vector<double> ticks;
-    for (double n = std::ceil(low / step - 1.0e-9); n * step <= high + 1.0e-9 * step; n += 1.0) ticks.push_back(n * step);
+    for (double n = std::ceil(low / step - 1.0e-9); n * step <= high + 1.0e-9 * step; n += 1.0)
+        ticks.push_back(n == 0.0 ? 0.0 : n * step);
     return ticks;
 }
 
@@ -66,9 +69,8 @@ std::array<float, 3> spectral_display_color(double wavelength_nm) {
     const Rgb3d linear =
         linear_srgb_from_xyz({(1.0 - t) * double(low.x) + t * double(high.x), (1.0 - t) * double(low.y) + t * double(high.y),
                               (1.0 - t) * double(low.z) + t * double(high.z)});
-    const double white = std::max(0.0, -std::min({linear.r, linear.g, linear.b}));
-    const double most = white + std::max({linear.r, linear.g, linear.b});
-    const auto shown = [&](double component) { return float(srgb_encoded((component + white) / most)); };
+    const double most = std::max({linear.r, linear.g, linear.b, faintest_full_brightness});
+    const auto shown = [&](double component) { return float(srgb_encoded(std::max(0.0, component) / most)); };
     return {shown(linear.r), shown(linear.g), shown(linear.b)};
 }
 

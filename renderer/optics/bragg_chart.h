@@ -21,8 +21,8 @@ struct BraggChart {
     std::string title;
 };
 
-/// Display-encoded sRGB of a single wavelength: its hue as strong as sRGB can show it. Spectral colours lie outside of the gamut;
-/// they are mixed with just so much white that no component is negative, and made as bright as can be.
+/// Display-encoded sRGB of a single wavelength. Spectral colours lie outside of the gamut: components below zero are cut, and the
+/// strongest is made 1 but at the ends of the spectrum, where the eye's response fades.
 std::array<float, 3> spectral_display_color(double wavelength_nm);
 
 /// Every point the colour of its Bragg wavelength, with labelled axes, display-encoded RGB. Throws InputError where the index

@@ -37,7 +37,7 @@ void add_slab_flags(CLI::App& command, ReflectanceFlags& flags) {
         .add_option("--tolerance", flags.tolerance,
                     "ewald-fresnel: largest deviation of |w + (lambda/n) G| from 1 (default 0.01)")
         ->type_name("T");
-    command.add_option("--slices", flags.slices, "transfer-matrix: films per distance of two planes of centres (default 512)")
+    command.add_option("--slices", flags.slices, "transfer-matrix: films per distance of two planes of centres (default 1024)")
         ->type_name("N");
 }
 

@@ -46,7 +46,9 @@ void add_crystal_flags(CLI::App& command, CrystalFlags& flags) {
 
 RefractiveIndex parse_index(const std::string& flag, const std::string& text) {
     try {
-        return text.ends_with(".csv") ? RefractiveIndex::from_csv(text) : RefractiveIndex::from_text(text);
+        if (text.ends_with(".csv")) return RefractiveIndex::from_csv(text);
+        const bool is_number = !text.empty() && text.find_first_not_of("0123456789.eE+-") == std::string::npos;
+        return is_number ? RefractiveIndex::from_text(text) : RefractiveIndex::of_material(text);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", flag, error.what()));
     }

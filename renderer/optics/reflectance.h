@@ -16,7 +16,7 @@ struct ReflectanceSetup {
     double layers = 24.0;           ///< thickness of a slab times |G|
     double blocks = 1.0;            ///< slabs in an incoherent pile
     double ewald_tolerance = 0.01;  ///< ewald-fresnel
-    int slices_per_period = 512;    ///< transfer-matrix: films per distance of two planes of centres
+    int slices_per_period = 1024;    ///< transfer-matrix: films per distance of two planes of centres
     ReflectanceModel model = ReflectanceModel::two_beam;
 };
 
