@@ -75,8 +75,8 @@ class PathTracer {
                     ++counters_.lost_paths;
                     return;
                 }
-                const InteriorEvent event =
-                    cross_interior(scene_.opal, optics_, medium_, ray, hit.distance_mm, visit_, weights_, random_, counters_);
+                const InteriorEvent event = cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, hit.distance_mm,
+                                                           visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
                     specular_ = true;

@@ -198,7 +198,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     opal.medium.sigma_a_per_mm = sigma_a_per_mm_.data();
     opal.medium.sigma_s_rayleigh_400nm_per_mm = float(means.sigma_s_rayleigh_400nm_per_mm);
     opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
-    opal.medium.mie_asymmetry = float(constants.mie_asymmetry);
+    if (means.sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
+    opal.medium.mie_phase = mie_phase_.view();
 }
 
 void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {

@@ -10,6 +10,7 @@
 #include "renderer/host/environment_map.h"
 #include "renderer/host/grain_grid.h"
 #include "renderer/host/mesh_data.h"
+#include "renderer/host/phase_function.h"
 #include "renderer/host/spectrum_tables.h"
 
 namespace opal {
@@ -52,6 +53,7 @@ class HostScene {
     std::vector<float> grain_size_mm_;
     OpticalTables optics_;
     std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
+    PhaseFunction mie_phase_;
     int reciprocal_points_ = 0;
     std::string recipe_toml_;
     SceneView view_;
