@@ -33,12 +33,14 @@ def round_trip():
         error = np.array([float(row["delta_e"]) for row in chosen])
         largest = np.array([max(float(row[c]) for c in "rgb") for row in chosen])
         ordered = np.sort(np.maximum(error, 1e-6))
-        axes[0].loglog(ordered, 1.0 - np.arange(len(ordered)) / len(ordered), color=color, label=label)
+        shown = label if error.max() > 1e-3 else f"{label}: all below {error.max():.0e}"
+        axes[0].loglog(ordered, 1.0 - np.arange(len(ordered)) / len(ordered), color=color, label=shown)
         levels = np.unique(largest)
         mean = [error[largest == level].mean() for level in levels]
         axes[1].semilogy(levels, np.maximum(mean, 1e-6), color=color, label=label)
     axes[0].axvline(1.0, color="0.7", lw=0.8)
-    axes[0].set_xlim(1e-5, 100.0)
+    axes[0].set_xlim(1e-3, 10.0)
+    axes[0].set_ylim(1e-5, 2.0)
     axes[0].set_xlabel("round-trip error dE*ab")
     axes[0].set_ylabel("share of the cube above it")
     axes[1].set_xlabel("largest component (linear sRGB)")
@@ -60,8 +62,8 @@ def multiplication():
         axis.set_title(title, fontsize=10)
         axis.set_xlabel("multiplications")
     axes[0].set_ylabel("RGB against spectral, dE*ab")
-    axes[0].set_ylim(0.0)
-    axes[1].legend(frameon=False, fontsize=8)
+    axes[0].set_ylim(0.0, 85.0)
+    axes[1].legend(frameon=False, fontsize=8, ncol=2, loc="upper center")
     figure.tight_layout()
     figure.savefig(here / "color_multiplication.png", dpi=110)
 

@@ -52,7 +52,7 @@ struct SpectrumTables {
     const float* cdf = nullptr;       ///< its integral, 0 at 360 nm, 1 at 830 nm
     const SmitsRow* smits = nullptr;
     UpsamplingMethod upsampling = UpsamplingMethod::sigmoid;
-    AliasTable alias;  ///< of the same density; empty where wavelengths are drawn by inversion
+    AliasTable alias;  ///< of the same density; empty where the hero is drawn by inversion
 };
 
 /// Linear interpolation in a 1 nm table; wavelengths are inside the range by construction.
@@ -72,34 +72,36 @@ struct PathWavelengths {
     int count = N;  ///< lanes in use: 1 + companions
 };
 
-/// One wavelength from a number in [0, 1), with the table's density: its 1 nm interval by the alias table where there is one,
-/// else by inversion.
-OPAL_HD inline float sample_wavelength(const SpectrumTables& tables, float u, float& pdf_per_nm) {
+/// The 1 nm interval that holds a number in [0, 1) of the integrated density, and the place within it: inversion, monotone, so
+/// that strata of numbers are strata of wavelengths.
+OPAL_HD inline int invert_wavelength_density(const SpectrumTables& tables, float u, float& within) {
     int low = 0;
-    float within;
-    if (tables.alias.count > 0) {
-        low = tables.alias.sample(u, within);
-    } else {
-        for (int high = spectrum_samples - 1; high - low > 1;) {
-            const int middle = (low + high) / 2;
-            (tables.cdf[middle] <= u ? low : high) = middle;
-        }
-        within = (u - tables.cdf[low]) / (tables.cdf[low + 1] - tables.cdf[low]);
+    for (int high = spectrum_samples - 1; high - low > 1;) {
+        const int middle = (low + high) / 2;
+        (tables.cdf[middle] <= u ? low : high) = middle;
     }
-    pdf_per_nm = tables.pdf[low];
-    return spectrum_min_nm + float(low) + min_of(within, 0.999999f);
+    within = (u - tables.cdf[low]) / (tables.cdf[low + 1] - tables.cdf[low]);
+    return low;
 }
 
-/// Draws the hero from the table's density and its companions by rotating the uniform number (Wilkie et al. 2014,
-/// "Hero wavelength spectral sampling"), so that each lane by itself has the table's density. Lanes beyond `count` repeat others.
+/// Draws the hero from the table's density, by the alias table where there is one, else by inversion, and its companions by
+/// rotating the hero's place in the integrated density (Wilkie et al. 2014, "Hero wavelength spectral sampling"), so that each
+/// lane by itself has the table's density and all together are spread evenly over it. Lanes beyond `count` repeat others.
 template <int N>
 OPAL_HD inline PathWavelengths<N> sample_wavelengths(const SpectrumTables& tables, float u, int count) {
     PathWavelengths<N> result;
     result.count = count;
+    const bool by_alias = tables.alias.count > 0;
+    float within;
+    int interval = by_alias ? tables.alias.sample(u, within) : invert_wavelength_density(tables, u, within);
+    const float start = by_alias ? tables.cdf[interval] + within * tables.pdf[interval] : u;
     for (int lane = 0; lane < N; ++lane) {
-        float rotated = u + float(lane % count) / float(count);
-        rotated -= floorf(rotated);
-        result.wavelength_nm[lane] = sample_wavelength(tables, rotated, result.pdf_per_nm[lane]);
+        if (lane > 0) {
+            const float turned = start + float(lane % count) / float(count);
+            interval = invert_wavelength_density(tables, turned - floorf(turned), within);
+        }
+        result.wavelength_nm[lane] = spectrum_min_nm + float(interval) + min_of(within, 0.999999f);
+        result.pdf_per_nm[lane] = tables.pdf[interval];
     }
     return result;
 }

@@ -9,7 +9,7 @@ asm(R"(
 .pushsection .rodata
 .balign 64
 .global opal_sigmoid_table
-.type opal_sigmoid_table, @object
+.type opal_sigmoid_table, %object
 opal_sigmoid_table:
 .incbin ")" OPAL_SIGMOID_TABLE_FILE R"("
 .size opal_sigmoid_table, . - opal_sigmoid_table

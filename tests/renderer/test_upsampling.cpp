@@ -30,7 +30,6 @@ TEST(Upsampling, JakobHanikaRoundTrip) {
     const ErrorStatistics errors = statistics_of(round_trip_errors(tables_for(Upsampling::jakob_hanika), srgb_cube(12)));
     EXPECT_LT(errors.max, 1.0);
     EXPECT_LT(errors.percentile_95, 0.5);
-    RecordProperty("mean", std::to_string(errors.mean));
 }
 
 TEST(Upsampling, BasisRoundTripIsExact) {
@@ -38,13 +37,13 @@ TEST(Upsampling, BasisRoundTripIsExact) {
     EXPECT_LT(statistics_of(round_trip_errors(tables_for(Upsampling::basis), srgb_cube(9))).max, 0.05);
 }
 
-/// Smits' spectra are for an equal-energy white and ten bins: the published method misses by some dE under D65, Jakob and
-/// Hanika's is an order of magnitude better.
+/// Smits' spectra are for an equal-energy white and ten bins: the published method misses by 2 dE in the mean and up to 5 under
+/// D65, twenty times as much as Jakob and Hanika's. A bin's width of shift would be far outside.
 TEST(Upsampling, SmitsRoundTripIsWhatTenBinsAllow) {
     const ErrorStatistics smits = statistics_of(round_trip_errors(tables_for(Upsampling::smits), srgb_cube(9)));
     const ErrorStatistics sigmoid = statistics_of(round_trip_errors(tables_for(Upsampling::jakob_hanika), srgb_cube(9)));
     EXPECT_GT(smits.mean, 10.0 * sigmoid.mean);
-    EXPECT_LT(smits.max, 40.0);
+    EXPECT_LT(smits.max, 6.0);
 }
 
 /// Smits' method by hand: (0.2, 0.7, 0.4) is 0.2 white + 0.2 cyan + 0.3 green.
@@ -78,8 +77,8 @@ TEST(Upsampling, GreysAreFlat) {
             ASSERT_NEAR(reflectance, double(value), 2e-7) << value;
 }
 
-/// The generator's table itself: its nodes are solutions of the sigmoid's equations to the generator's own limit of dE 1e-4,
-/// except where components are below 2e-4 of full scale, which no sigmoid with bounded coefficients reaches.
+/// The generator's table itself: its nodes solve the equations to the generator's own limit of dE 1e-4. From the fifth lightness
+/// up, 0.006; below, the limit of the coefficients keeps saturated colours from their full darkness.
 TEST(Upsampling, TableSolvesItsNodes) {
     const SpectrumTablesData tables = tables_for(Upsampling::jakob_hanika);
     constexpr int n = sigmoid_table_resolution;
