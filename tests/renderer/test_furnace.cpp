@@ -74,6 +74,17 @@ TEST(Furnace, DiffractionAndScattering) {
     expect_invisible(small, "[opal]\ncompanions = 0\n", 512);
 }
 
+TEST(Furnace, FieldsThatVary) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 280.0;
+    small.fields[0] = [](const auto& p) { return 1.0 + p.x() / 4.0; };  // of no absorption at all
+    small.fields[1] = [](const auto& p) { return 0.3 + 0.3 * std::sin(4.0 * p.z()); };
+    small.fields[2] = [](const auto& p) { return p.y() > 0.5 ? 0.8 : 0.1; };
+    expect_invisible(small, "[opal]\ncompanions = 0\n", 384);
+    expect_invisible(small, "[opal]\ncompanions = 3\n", 192);
+    expect_invisible(small, "[opal]\ncompanions = 7\nmajorants = \"global\"\n", 128);
+}
+
 /// From inside there is nothing to see either.
 TEST(Furnace, CameraInsideTheOpal) {
     SmallOpal small;
