@@ -42,6 +42,9 @@ void require_writable(const std::filesystem::path& path) {
         throw InputError(fmt::format("output {}: folder '{}' does not exist", path.string(), folder.string()));
     if (std::filesystem::is_directory(path, error))
         throw InputError(fmt::format("output {}: is a folder; name a file", path.string()));
+    // Renaming the finished file onto a device or a pipe would take its place in the file system.
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+        throw InputError(fmt::format("output {}: is a device or a pipe; name a file", path.string()));
     const std::filesystem::path probe = temporary_name(path);
     const int descriptor = ::open(probe.c_str(), O_CREAT | O_WRONLY, 0666);
     if (descriptor < 0) throw InputError(fmt::format("output {}: cannot be written: {}", path.string(), std::strerror(errno)));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "formats/illuminant.h"
 #include "formats/text.h"
 #include "formats/toml_reader.h"
 
@@ -95,9 +96,12 @@ EnvironmentDescription read_environment(TomlSection section) {
                     illuminant_names);
     if ((environment.illuminant == IlluminantKind::file) != !environment.illuminant_file.empty())
         section.fail("illuminant_file", "and illuminant = \"file\" go together: a .csv with wavelength_nm and a relative power");
-    if (environment.illuminant == IlluminantKind::blackbody || environment.illuminant == IlluminantKind::led)
+    if (environment.illuminant == IlluminantKind::blackbody)
         environment.temperature_k =
             section.number("temperature_k", environment.temperature_k, NumberRange::between(1000.0, 25000.0));
+    if (environment.illuminant == IlluminantKind::led)
+        environment.temperature_k =
+            section.number("temperature_k", environment.temperature_k, NumberRange::between(led_min_k, led_max_k));
     section.finish();
     return environment;
 }

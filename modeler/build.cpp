@@ -10,6 +10,7 @@
 #include "formats/field_summary.h"
 #include "formats/report.h"
 #include "modeler/base_color_fields.h"
+#include "modeler/defect_scattering.h"
 #include "modeler/grain_growth.h"
 #include "modeler/labelling.h"
 #include "modeler/level_set.h"
@@ -69,9 +70,19 @@ OpalConstants constants_of(const Recipe& recipe) {
     return constants;
 }
 
+/// Turns a concentration of defects into the coefficient that follows from it, which the recipe then holds beside it; returns how
+/// that varies over the wavelength.
+SampledSpectrum resolve_defects(Recipe& recipe) {
+    if (!(recipe.base_color.defect_concentration > 0.0)) return {};
+    const DefectScattering defects = defect_scattering(recipe.crystal, recipe.base_color);
+    recipe.base_color.sigma_s_mie_per_mm = defects.sigma_s_550nm_per_mm;
+    return defects.shape;
+}
+
 /// What the asset takes over from the recipe as it stands.
-void describe_origin(const Recipe& recipe, OpalAsset& asset) {
+void describe_origin(const Recipe& recipe, const SampledSpectrum& sigma_s_mie_shape, OpalAsset& asset) {
     asset.constants = constants_of(recipe);
+    asset.constants.sigma_s_mie_shape = sigma_s_mie_shape;
     asset.tessellation = recipe.grains.tessellation;
     asset.boundary_noise = recipe.grains.boundary_noise;
     asset.seed = recipe.grains.seed;
@@ -164,7 +175,8 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
         report.scene_needs =
             fit_to_scene(recipe, scene_fit->scene, scene_fit->output, shape->bounds_mm(), scene_fit->accepted_error_pixels);
     built.output = recipe.output;
-    describe_origin(recipe, asset);
+    const SampledSpectrum sigma_s_mie_shape = resolve_defects(recipe);
+    describe_origin(recipe, sigma_s_mie_shape, asset);
     const double voxel_size_mm = needs_voxels(recipe.output) ? resolve_voxel_size_mm(recipe, shape->bounds_mm()) : 0.0;
 
     SiteNetwork network = make_site_network(recipe, *shape, stages);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/crystal_defect.h"
 #include "formats/field_summary.h"
 #include "formats/recipe_names.h"
 #include "formats/text.h"
@@ -16,14 +17,39 @@
 namespace opal {
 namespace {
 
-/// Part of space that touching spheres fill in fcc packing.
-const double fcc_fill = units::pi / (3.0 * std::sqrt(2.0));
+nlohmann::json index_name(const RefractiveIndex& index) {
+    return index.varies() ? nlohmann::json(index.name()) : nlohmann::json();
+}
+
+/// What the Mie part of the scattering is: its phase function, its particle where that gives it, and its spectrum.
+nlohmann::json describe_scatterers(const OpalConstants& constants) {
+    const CrystalDefect defect = crystal_defect(constants);
+    const auto sigma_per_mm = [&](double wavelength_nm) {
+        const SampledSpectrum& shape = constants.sigma_s_mie_shape;
+        return constants.sigma_s_mie_per_mm * (shape.value.empty() ? 1.0 : shape.at(wavelength_nm));
+    };
+    nlohmann::json scatterers = {{"phase", recipe_names::name(recipe_names::mie_phases, constants.mie_phase)},
+                                 {"asymmetry", constants.mie_asymmetry},
+                                 {"draine_alpha", constants.draine_alpha},
+                                 {"particle", recipe_names::name(recipe_names::mie_particles, constants.mie_particle)},
+                                 {"particle_diameter_nm", defect.diameter_nm},
+                                 {"follows_from_defects", !constants.sigma_s_mie_shape.value.empty()},
+                                 {"sigma_s_450nm_per_mm", sigma_per_mm(450.0)},
+                                 {"sigma_s_550nm_per_mm", sigma_per_mm(550.0)},
+                                 {"sigma_s_650nm_per_mm", sigma_per_mm(650.0)}};
+    if (constants.mie_phase == MiePhase::lorenz_mie)
+        scatterers["asymmetry"] =
+            mie_efficiencies(mie_coefficients(defect.size_parameter(550.0), defect.relative_index(550.0))).asymmetry;
+    return scatterers;
+}
 
 nlohmann::json describe_constants(const OpalConstants& constants) {
-    const double n_eff = fcc_fill * constants.n_sphere.at(sodium_d_nm) + (1.0 - fcc_fill) * constants.n_medium.at(sodium_d_nm);
+    const double n_eff = crystal_defect(constants).effective_index(sodium_d_nm);
     return {{"sphere_diameter_nm", constants.sphere_diameter_nm},
             {"n_sphere", constants.n_sphere.at(sodium_d_nm)},
             {"n_medium", constants.n_medium.at(sodium_d_nm)},
+            {"n_sphere_material", index_name(constants.n_sphere)},
+            {"n_medium_material", index_name(constants.n_medium)},
             {"n_eff", n_eff},
             {"wavelength_111_normal_nm", 2.0 * n_eff * constants.sphere_diameter_nm * std::sqrt(2.0 / 3.0)},
             {"coherence_length_um", constants.coherence_length_um},
@@ -32,8 +58,30 @@ nlohmann::json describe_constants(const OpalConstants& constants) {
             {"sigma_s_rayleigh_400nm_per_mm", constants.sigma_s_rayleigh_400nm_per_mm},
             {"sigma_s_mie_per_mm", constants.sigma_s_mie_per_mm},
             {"mie_asymmetry", constants.mie_asymmetry},
+            {"mie", describe_scatterers(constants)},
             {"stacking_fault_probability", constants.stacking_fault_probability},
             {"mosaic_spread_deg", constants.mosaic_spread_deg}};
+}
+
+std::string index_text(const nlohmann::json& index, const nlohmann::json& material) {
+    const std::string value = fmt::format("{:.5g}", index.get<double>());
+    return material.is_null() ? value : fmt::format("{} ({})", value, material.get<std::string>());
+}
+
+std::string scatterers_text(const nlohmann::json& mie) {
+    const auto number = [&](const char* key) { return mie[key].get<double>(); };
+    const std::string phase = mie["phase"].get<std::string>();
+    std::string text = fmt::format("scatterers  {}, mean cosine {:.3g}", phase, number("asymmetry"));
+    if (phase == "lorenz-mie") text += " at 550 nm";
+    if (phase == "draine") text += fmt::format(", alpha {:.4g}", number("draine_alpha"));
+    if (phase == "lorenz-mie" || mie["follows_from_defects"].get<bool>())
+        text +=
+            fmt::format("; particle: {}, {:.4g} nm across", mie["particle"].get<std::string>(), number("particle_diameter_nm"));
+    if (mie["follows_from_defects"].get<bool>())
+        text += fmt::format(
+            "\ndefects     scatter {:.4g} /mm at 450 nm, {:.4g} /mm at 550 nm, {:.4g} /mm at 650 nm (the Mie part of the body)",
+            number("sigma_s_450nm_per_mm"), number("sigma_s_550nm_per_mm"), number("sigma_s_650nm_per_mm"));
+    return text + "\n";
 }
 
 nlohmann::json vector_json(const openvdb::Vec3d& v) {
@@ -157,14 +205,16 @@ std::string opal_info_text(const nlohmann::json& d) {
                             : fmt::format(", {:.3g} mm across on average", number(d["mean_grain_diameter_mm"])));
     text += fmt::format("sites       {} ({} hidden)\n", d["sites"].get<std::uint64_t>(), d["hidden_sites"].get<std::uint64_t>());
     text += tessellation_text(d["tessellation"]);
-    text += fmt::format("spheres     {:.4g} nm across, index {:.5g} in {:.5g}: effective index {:.5g}\n",
-                        number(c["sphere_diameter_nm"]), number(c["n_sphere"]), number(c["n_medium"]), number(c["n_eff"]));
+    text += fmt::format("spheres     {:.4g} nm across, index {} in {}: effective index {:.5g}\n", number(c["sphere_diameter_nm"]),
+                        index_text(c["n_sphere"], c["n_sphere_material"]), index_text(c["n_medium"], c["n_medium_material"]),
+                        number(c["n_eff"]));
     text += fmt::format("color       up to {:.1f} nm, from light straight onto (111) planes; coherence length {:.4g} um\n",
                         number(c["wavelength_111_normal_nm"]), number(c["coherence_length_um"]));
     text += fmt::format(
         "body        absorber {}, {:.4g} /mm at 550 nm; scattering {:.4g} /mm (Rayleigh, 400 nm) and {:.4g} /mm (Mie)\n",
         c["absorber"].get<std::string>(), number(c["sigma_a_550nm_per_mm"]), number(c["sigma_s_rayleigh_400nm_per_mm"]),
         number(c["sigma_s_mie_per_mm"]));
+    text += scatterers_text(c["mie"]);
     text += fields_text(d["fields"]);
     text += fmt::format("disorder    stacking faults {:.4g} per layer, mosaic spread {:.4g} degrees\n",
                         number(c["stacking_fault_probability"]), number(c["mosaic_spread_deg"]));

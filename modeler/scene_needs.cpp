@@ -10,6 +10,7 @@
 #include "formats/error.h"
 #include "formats/spectrum.h"
 #include "formats/units.h"
+#include "modeler/defect_scattering.h"
 
 namespace opal {
 namespace {
@@ -83,6 +84,14 @@ void drop_field(FieldRecipe& field, const std::string& name, double coefficient_
     field = {};
 }
 
+/// The largest of the visible range.
+double strongest_mie_per_mm(const Recipe& recipe) {
+    if (!(recipe.base_color.defect_concentration > 0.0)) return recipe.base_color.sigma_s_mie_per_mm;
+    const DefectScattering defects = defect_scattering(recipe.crystal, recipe.base_color);
+    if (defects.shape.value.empty()) return 0.0;
+    return defects.sigma_s_550nm_per_mm * *std::max_element(defects.shape.value.begin(), defects.shape.value.end());
+}
+
 void drop_what_does_not_show(Recipe& recipe, double longest_path_mm, SceneNeeds& needs) {
     BaseColorRecipe& color = recipe.base_color;
     // Rayleigh scattering is strongest at the short end of the visible range.
@@ -92,7 +101,7 @@ void drop_what_does_not_show(Recipe& recipe, double longest_path_mm, SceneNeeds&
     drop_field(color.sigma_a_field, "sigma_a_field", strongest_per_mm, longest_path_mm, needs);
     drop_field(color.sigma_s_rayleigh_field, "sigma_s_rayleigh_field", color.sigma_s_rayleigh_400nm_per_mm * rayleigh_at_360nm,
                longest_path_mm, needs);
-    drop_field(color.sigma_s_mie_field, "sigma_s_mie_field", color.sigma_s_mie_per_mm, longest_path_mm, needs);
+    drop_field(color.sigma_s_mie_field, "sigma_s_mie_field", strongest_mie_per_mm(recipe), longest_path_mm, needs);
     if (recipe.output.has(OutputGrid::weight)) {
         std::erase(recipe.output.grids, OutputGrid::weight);
         needs.dropped.push_back("grid weight: nothing is rendered from it");

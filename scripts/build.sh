@@ -9,9 +9,9 @@ preset=${2:-release}
 
 [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >/dev/null
 case $targets in
-    programs) cmake --build "build/$preset" --target opal-model opal-render ;;
-    unit) cmake --build "build/$preset" --target opal_formats_tests opal_modeler_tests opal_renderer_tests ;;
-    quick-unit) cmake --build "build/$preset" --target opal_formats_tests opal_renderer_tests ;;
+    programs) cmake --build "build/$preset" --target opal-model opal-render opal-optics ;;
+    unit) cmake --build "build/$preset" --target opal_formats_tests opal_modeler_tests opal_renderer_tests opal_optics_tests ;;
+    quick-unit) cmake --build "build/$preset" --target opal_formats_tests opal_renderer_tests opal_optics_tests ;;
     all) cmake --build "build/$preset" ;;
     *) echo "usage: scripts/build.sh programs|unit|quick-unit|all [PRESET]" >&2; exit 2 ;;
 esac

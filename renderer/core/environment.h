@@ -66,7 +66,7 @@ OPAL_HD inline float environment_pdf(const EnvironmentView& environment, Vec3 di
     const float* columns = environment.column_cdf + row * (environment.width + 1);
     const float density = (environment.row_cdf[row + 1] - environment.row_cdf[row]) * (columns[column + 1] - columns[column]) *
                           float(environment.width) * float(environment.height);
-    const float sine = sqrtf(max_of(0.0f, 1.0f - direction.z * direction.z));
+    const float sine = sqrtf(direction.x * direction.x + direction.y * direction.y);
     return sine > 1.0e-6f ? density / (2.0f * pi_f * pi_f * sine) : 0.0f;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/laue_rates.h"
 #include "renderer/core/mosaic.h"
 #include "renderer/core/path_random.h"
 #include "renderer/core/scene_view.h"
-#include "renderer/core/two_beam.h"
 
 /// A stay in one grain. Light that a family of planes turns meets the same family again at the same angle, is turned back, and so
 /// on: a random walk between beams, which ends where the light leaves the grain or scatters. What is random about the grain
@@ -25,6 +25,7 @@ template <int N>
 struct GrainVisit {
     int grain = 0;                   ///< 0: not known yet
     bool fresh = true;               ///< nothing below is drawn yet
+    bool at_boundary = false;        ///< the stay begins where the light comes in from outside the grain
     float block_nm = 0.0f;           ///< thickness of a coherent block
     uint64_t p_polarized = 0;        ///< a bit per family: how the light is polarized towards it
     float max_rate_per_mm = 0.0f;    ///< where rates saturate
@@ -36,10 +37,14 @@ struct GrainVisit {
 
     OPAL_HD const GrainRates<N>& present() const { return rates[current]; }
     /// The next flight starts a new stay: after scattering, or at the surface.
-    OPAL_HD void renew() { fresh = true; }
+    OPAL_HD void renew() {
+        fresh = true;
+        at_boundary = false;
+    }
     OPAL_HD void enter(int next_grain) {
         grain = next_grain;
         fresh = true;
+        at_boundary = true;
     }
 };
 
@@ -71,6 +76,7 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
     rates.count = 0;
     rates.direction = direction;
     for (int i = 0; i < N; ++i) rates.total_per_mm[i] = 0.0f;
+    if (opal.diffraction == Diffraction::ewald_fresnel) return;  // turns at boundaries alone
     for (int k = 0; k < opal.num_pairs; ++k) {
         const PlanePair& pair = opal.pairs[k];
         const float cosine = fabsf(dot(lattice_direction, pair.normal));
@@ -79,7 +85,10 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
             cosine,    pair.g_per_nm, pair.form, min_of(visit.block_nm, pair.coherence_nm), ((visit.p_polarized >> k) & 1u) != 0,
             pair.share};
         float* rate_per_mm = rates.rate_per_mm[rates.count];
-        if (!reflection_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm)) continue;
+        const bool any = opal.diffraction == Diffraction::laue
+                             ? laue_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm)
+                             : reflection_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm);
+        if (!any) continue;
         for (int i = 0; i < N; ++i) rates.total_per_mm[i] += rate_per_mm[i];
         rates.pair[rates.count++] = k;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/ewald_turn.h"
 #include "renderer/core/grain_visit.h"
 #include "renderer/core/medium_flight.h"
 
@@ -60,6 +61,29 @@ OPAL_HD inline void pass_planes(const GrainRates<N>& rates, float length_mm, Lan
         weights.ratio.v[i] *= expf((rates.total_per_mm[0] - rates.total_per_mm[i]) * length_mm);
 }
 
+/// The Ewald rule at the boundary where a stay begins. Returns whether the hero is turned, with its new direction (world).
+template <int N>
+OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& optics, Vec3 direction, Vec3 object_direction,
+                                     GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random, Vec3& turned) {
+    visit.at_boundary = false;
+    const Vec3 lattice_direction = visit.object_from_lattice.conjugate().rotate(object_direction);
+    const float u = random.next();
+    const EwaldChance hero = ewald_chance(opal, optics, 0, lattice_direction, u);
+    if (hero.pair < 0) {
+        for (int i = 1; i < weights.count; ++i)
+            weights.ratio.v[i] *=
+                (1.0f - ewald_chance(opal, optics, i, lattice_direction, u).probability) / (1.0f - hero.probability);
+        return false;
+    }
+    // The direction depends on the wavelength.
+    weights.drop_companions();
+    const PlanePair& pair = opal.pairs[hero.pair];
+    const Vec3 normal = opal.world_from_object.world_from_local_direction(visit.object_from_lattice.rotate(pair.normal));
+    turned = ewald_direction(direction, normal, pair.g_per_nm, optics.wavelength_nm[0] / optics.n_eff[0]);
+    visit.renew();
+    return true;
+}
+
 /// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface `surface_mm` ahead.
 template <int N>
 OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const LaneOptics<N>& optics, const LaneMedium<N>& medium,
@@ -76,6 +100,12 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const LaneOpti
         if (visit.grain == 0) visit.enter(walk.next_grain(0, reached, surface_mm / scale));
         while (visit.grain != 0) {
             prepare_visit(opal, optics, ray.direction, direction, visit, random, counters);
+            Vec3 turned;
+            if (opal.diffraction == Diffraction::ewald_fresnel && visit.at_boundary &&
+                turn_at_boundary(opal, optics, ray.direction, direction, visit, weights, random, turned)) {
+                ++counters.diffractions;
+                return {InteriorEventKind::diffraction, entered_mm, turned, false};
+            }
             const GrainRates<N>& rates = visit.present();
             const float total_per_mm = rates.total_per_mm[0];
             const float turn_mm = total_per_mm > 0.0f ? entered_mm - logf(1.0f - random.next()) / total_per_mm : 3.0e38f;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/host/spectrum_tables.h"
+#include "formats/colorimetry.h"
 
 namespace opal {
 
@@ -75,12 +75,12 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSamp
         if (first) totals.radiance_squared[bins[i]] += whole * whole;
     }
     ++totals.samples;
-    const Rgb3d lost_rgb = linear_srgb_from_xyz(lost_x, lost_y, lost_z);
+    const Rgb3d lost_rgb = linear_srgb_from_xyz({lost_x, lost_y, lost_z});
     totals.truncated_rgb[0] += lost_rgb.r;
     totals.truncated_rgb[1] += lost_rgb.g;
     totals.truncated_rgb[2] += lost_rgb.b;
 
-    const Rgb3d rgb = linear_srgb_from_xyz(x, y, z);
+    const Rgb3d rgb = linear_srgb_from_xyz({x, y, z});
     Pixel& target = pixels_[pixel];
     const double values[3] = {rgb.r, rgb.g, rgb.b};
     for (int c = 0; c < 3; ++c) {

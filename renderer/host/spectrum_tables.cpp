@@ -2,17 +2,11 @@
 #include "renderer/host/spectrum_tables.h"
 
 #include "formats/cie_tables.h"
+#include "formats/colorimetry.h"
 #include "formats/rgb_basis.h"
 
 namespace opal {
 namespace {
-
-double d65_at(int index_1nm) {
-    const double position = (360.0 + index_1nm - 300.0) / 5.0;
-    const int i = std::min(int(position), 105);
-    const double t = position - i;
-    return (1.0 - t) * double(cie_d65_5nm[i]) + t * double(cie_d65_5nm[i + 1]);
-}
 
 float basis_at(int primary, int index_1nm) {
     const int i = std::min(index_1nm / 10, 46);
@@ -27,13 +21,13 @@ SpectrumTablesData make_spectrum_tables() {
     double y_integral = 0.0, white_y = 0.0;
     for (int i = 0; i < spectrum_samples; ++i) {
         y_integral += double(cie_1931_observer[i].y);
-        white_y += double(cie_1931_observer[i].y) * d65_at(i);
+        white_y += double(cie_1931_observer[i].y) * cie_d65_at(colorimetric_min_nm + i);
     }
     for (int i = 0; i < spectrum_samples; ++i) {
         const CieObserverRow& row = cie_1931_observer[i];
         const float scale = float(1.0 / y_integral);
         tables.observer.push_back({row.x * scale, row.y * scale, row.z * scale});
-        tables.white.push_back(float(d65_at(i) * y_integral / white_y));
+        tables.white.push_back(float(cie_d65_at(colorimetric_min_nm + i) * y_integral / white_y));
         tables.rgb_basis.push_back({basis_at(0, i), basis_at(1, i), basis_at(2, i)});
     }
     std::vector<double> density;
@@ -55,13 +49,6 @@ SpectrumTablesData make_spectrum_tables() {
     // The density is what the rounded table draws, so that inversion and density agree to the last digit.
     for (int i = 0; i + 1 < spectrum_samples; ++i) tables.pdf.push_back(tables.cdf[i + 1] - tables.cdf[i]);
     return tables;
-}
-
-Rgb3d linear_srgb_from_xyz(double x, double y, double z) {
-    // Inverse of the sRGB primaries' matrix for the white of the tables, XYZ = (0.9504707, 1, 1.0888285); generate_rgb_basis.py
-    // derives it.
-    return {3.2404443 * x - 1.53713383 * y - 0.49852989 * z, -0.96926675 * x + 1.87601224 * y + 0.04155605 * z,
-            0.05564352 * x - 0.20402624 * y + 1.05722687 * z};
 }
 
 }  // namespace opal

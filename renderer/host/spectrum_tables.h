@@ -23,10 +23,4 @@ struct SpectrumTablesData {
 /// drawn.
 SpectrumTablesData make_spectrum_tables();
 
-/// Linear sRGB of XYZ whose white is this project's D65 table, so that white is exactly (1, 1, 1).
-struct Rgb3d {
-    double r, g, b;
-};
-Rgb3d linear_srgb_from_xyz(double x, double y, double z);
-
 }  // namespace opal

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/colorimetry.h"
+
 namespace opal {
 namespace {
-
-float srgb_encode(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
 
 /// The identity up to `knee`, then smoothly towards 1.
 float shoulder(float value) {
@@ -39,7 +37,7 @@ Image tone_mapped(const Image& linear, double exposure_ev) {
             }
             const float brightest = std::max({rgb[0], rgb[1], rgb[2]});
             const float scale = brightest > 0.0f ? shoulder(brightest) / brightest : 0.0f;
-            for (const float c : rgb) display.pixels.push_back(srgb_encode(c * scale));
+            for (const float c : rgb) display.pixels.push_back(float(srgb_encoded(double(c * scale))));
         }
     return display;
 }

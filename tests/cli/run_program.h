@@ -24,6 +24,7 @@ std::size_t count_files(const std::string& folder);
 
 inline const std::string opal_model = OPAL_MODEL;
 inline const std::string opal_render = OPAL_RENDER;
+inline const std::string opal_optics = OPAL_OPTICS;
 inline const std::string examples = OPAL_EXAMPLES;
 
 }  // namespace opal

@@ -90,7 +90,7 @@ TEST_F(Clients, VdbPrintReadsEverything) {
     EXPECT_TRUE(printed.err.empty()) << printed.err;
     for (const std::string& name : grids_before_sites)
         EXPECT_NE(printed.out.find("Name: " + name + "\n"), std::string::npos) << name;
-    for (const char* part : {"Name: sites", "opal_schema_version: 2", "units: mm", "num_sites: 60", "Tree_ptdataidx32"})
+    for (const char* part : {"Name: sites", "opal_schema_version: 3", "units: mm", "num_sites: 60", "Tree_ptdataidx32"})
         EXPECT_NE(printed.out.find(part), std::string::npos) << part;
 }
 

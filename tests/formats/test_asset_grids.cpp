@@ -120,12 +120,54 @@ TEST_F(AssetGrids, ConstantsOfTheWholeModelerComeBack) {
     EXPECT_EQ(back.boundary_noise.octaves, 3);
 }
 
+/// What version 3 brought: indices over the wavelength and scatterers.
+TEST_F(AssetGrids, ScatterersAndIndicesComeBack) {
+    OpalAsset asset = two_grain_ball();
+    OpalConstants& constants = asset.constants;
+    constants.n_sphere = RefractiveIndex::of_material("silica");
+    constants.n_medium = RefractiveIndex::from_text("360:1.34 550:1.335 830:1.33");
+    constants.sigma_s_mie_per_mm = 0.3;
+    constants.sigma_s_mie_shape = {{360.0, 550.0, 830.0}, {1.0 / 3.0, 1.0, 0.1}};
+    constants.mie_phase = MiePhase::draine;
+    constants.draine_alpha = 12.5;
+    constants.mie_particle = MieParticle::sphere;
+    constants.mie_particle_diameter_nm = 180.0;
+    write_opal_asset(asset, folder_ / "a.vdb");
+    const OpalConstants back = read(folder_ / "a.vdb").constants;
+    EXPECT_EQ(back.n_sphere, constants.n_sphere);
+    EXPECT_EQ(back.n_medium, constants.n_medium);
+    EXPECT_EQ(back.sigma_s_mie_per_mm, 0.3);
+    EXPECT_EQ(back.sigma_s_mie_shape.wavelength_nm, constants.sigma_s_mie_shape.wavelength_nm);
+    EXPECT_EQ(back.sigma_s_mie_shape.value, constants.sigma_s_mie_shape.value);
+    EXPECT_EQ(back.mie_phase, MiePhase::draine);
+    EXPECT_EQ(back.draine_alpha, 12.5);
+    EXPECT_EQ(back.mie_particle, MieParticle::sphere);
+    EXPECT_EQ(back.mie_particle_diameter_nm, 180.0);
+}
+
+TEST_F(AssetGrids, FilesOfSchemaTwoStillRead) {
+    write_opal_asset(two_grain_ball(), folder_ / "a.vdb");
+    RawOpalFile raw = read_raw_opal_file(folder_ / "a.vdb");
+    for (const char* key : {"mie_phase", "draine_alpha", "mie_particle", "mie_particle_diameter_nm"})
+        raw.metadata.removeMeta(key);
+    EXPECT_INPUT_ERROR(asset_from_raw(raw, "cut.vdb", {}, notices_), "cut.vdb: metadata 'mie_phase' is missing");
+    raw.metadata.removeMeta("opal_schema_version");
+    raw.metadata.insertMeta("opal_schema_version", openvdb::Int32Metadata(2));
+    const OpalAsset old = asset_from_raw(raw, "old.vdb", {}, notices_);
+    EXPECT_TRUE(notices_.empty());
+    EXPECT_EQ(old.schema_version, 2);
+    EXPECT_EQ(old.constants.mie_phase, MiePhase::henyey_greenstein);
+    EXPECT_FALSE(old.constants.n_sphere.varies());
+    EXPECT_TRUE(old.constants.sigma_s_mie_shape.value.empty());
+}
+
 TEST_F(AssetGrids, FilesOfSchemaOneStillRead) {
     write_opal_asset(two_grain_ball(), folder_ / "a.vdb");
     RawOpalFile raw = read_raw_opal_file(folder_ / "a.vdb");
     const auto drop_new_keys = [&] {
         for (const char* key : {"stacking_fault_probability", "mosaic_spread_deg", "tessellation", "boundary_noise_amplitude_mm",
-                                "boundary_noise_scale_mm", "boundary_noise_octaves", "orientations"})
+                                "boundary_noise_scale_mm", "boundary_noise_octaves", "orientations", "mie_phase", "draine_alpha",
+                                "mie_particle", "mie_particle_diameter_nm"})
             raw.metadata.removeMeta(key);
     };
     drop_new_keys();

@@ -46,7 +46,12 @@ TEST(Recipe, EveryKeyReadsBack) {
             "sigma_a_field = { kind = \"noise\", contrast = 0.9, scale_mm = 4, octaves = 2 }\n"
             "sigma_s_rayleigh_field = { kind = \"layers\", direction = [1, 1, 0] }\n"
             "sigma_s_mie_field = { kind = \"grid\", file = \"f.vdb\", grid = \"d\", voxel_size_mm = 0.2 }\n"
-            "[output]\ngrids = [\"sites\", \"weight\"]\nfor_blender = true\n"};
+            "[output]\ngrids = [\"sites\", \"weight\"]\nfor_blender = true\n",
+        minimal +
+            "[crystal]\nn_sphere = \"silica\"\nn_medium = \"resin\"\n[base_color]\ndefect_concentration = 0.013\n"
+            "mie_phase = \"lorenz-mie\"\nmie_particle = \"sphere\"\nmie_particle_diameter_nm = 90\n",
+        minimal + "[base_color]\nsigma_s_mie_per_mm = 0.2\nmie_phase = \"draine\"\nmie_asymmetry = -0.4\ndraine_alpha = 7\n",
+        minimal + "[base_color]\nsigma_s_mie_per_mm = 0.2\nmie_phase = \"schlick\"\n"};
     for (const std::string& recipe : recipes) {
         const std::string text = recipe_to_toml(parse(recipe));
         EXPECT_EQ(recipe_to_toml(parse(text)), text);
@@ -55,6 +60,18 @@ TEST(Recipe, EveryKeyReadsBack) {
     EXPECT_EQ(second.base_color.sigma_s_mie_field.voxel_size_mm, 0.2);
     EXPECT_EQ(second.output.grids, (std::vector<OutputGrid>{OutputGrid::weight, OutputGrid::sites}));
     EXPECT_EQ(parse(recipes[0]).grains.weight[1].grid, "density");
+    const Recipe defects = parse(recipe_to_toml(parse(recipes[2])));
+    EXPECT_EQ(defects.crystal.n_sphere.name(), "silica");
+    EXPECT_EQ(defects.crystal.n_medium.name(), "resin");
+    EXPECT_EQ(defects.base_color.defect_concentration, 0.013);
+    EXPECT_EQ(defects.base_color.mie_phase, MiePhase::lorenz_mie);
+    EXPECT_EQ(defects.base_color.mie_particle, MieParticle::sphere);
+    EXPECT_EQ(defects.base_color.mie_particle_diameter_nm, 90.0);
+    const BaseColorRecipe draine = parse(recipe_to_toml(parse(recipes[3]))).base_color;
+    EXPECT_EQ(draine.mie_phase, MiePhase::draine);
+    EXPECT_EQ(draine.mie_asymmetry, -0.4);
+    EXPECT_EQ(draine.draine_alpha, 7.0);
+    EXPECT_EQ(parse(recipe_to_toml(parse(recipes[4]))).base_color.mie_phase, MiePhase::schlick);
 }
 
 TEST(Recipe, OverridesSetAnyKey) {
@@ -118,6 +135,14 @@ TEST(Recipe, KeysThatContradictEachOther) {
     EXPECT_INPUT_ERROR(parse(minimal + "[output]\ngrids = [\"shape\"]\n"), "needs grain_id or sites");
     EXPECT_INPUT_ERROR(parse(minimal + "[output]\ngrids = [\"grains\"]\n"), "'grains' is not known");
     EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nsigma_a_field = { contrast = 0.5 }\n"), "unknown key");
+}
+
+TEST(Recipe, ScatterersThatCannotBe) {
+    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\ndefect_concentration = 0.01\nsigma_s_mie_per_mm = 0.3\n"),
+                       "sigma_s_mie_per_mm follows from it: give one of the two");
+    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\ndefect_concentration = 0.5\n"), "0.5 is out of range; allowed: 0 to 0.2");
+    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nmie_phase = \"mie\"\n"), "'mie' is not known");
+    EXPECT_INPUT_ERROR(parse(minimal + "[base_color]\nmie_asymmetry = 1\n"), "1 is out of range; allowed: -0.99 to 0.99");
 }
 
 TEST(Recipe, OverrideErrorsNameTheOverride) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "modeler/build.h"
+#include "modeler/defect_scattering.h"
 #include "modeler_test_tools.h"
 
 namespace opal {
@@ -91,6 +92,19 @@ TEST(SceneNeeds, FieldsAreJudgedWhereTheAbsorberIsStrongest) {
         "sigma_a_field = { kind = \"noise\", contrast = 0.5 }\n");
     fit(recipe, scene_with(""));
     EXPECT_EQ(recipe.base_color.sigma_a_field.kind, FieldKind::noise);
+}
+
+TEST(SceneNeeds, FieldsOfDefectsAreJudgedWhereTheyScatterMost) {
+    const auto recipe_of = [](double concentration) {
+        return recipe_with("[base_color]\ndefect_concentration = " + std::to_string(concentration) +
+                           "\nmie_particle_diameter_nm = 20\nsigma_s_mie_field = { kind = \"noise\", contrast = 0.5 }\n");
+    };
+    // Small particles: 5.4 times as strong at 360 nm as at 550 nm.
+    const Recipe dense = recipe_of(0.1);
+    const double per_mm = defect_scattering(dense.crystal, dense.base_color).sigma_s_550nm_per_mm;
+    Recipe kept = recipe_of(0.1 * 1.0e-4 / per_mm), dropped = recipe_of(0.1 * 1.0e-5 / per_mm);
+    EXPECT_TRUE(fit(kept, scene_with("")).dropped.empty());
+    EXPECT_EQ(fit(dropped, scene_with("")).dropped.size(), 1u);
 }
 
 TEST(SceneNeeds, AFarGemKeepsFourVoxels) {

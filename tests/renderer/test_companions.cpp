@@ -29,7 +29,7 @@ TEST(Companions, ChangeNothingButTheNoise) {
             .outcome.totals;
     };
     const SpectrumTotals alone = render(0, 1024);
-    for (const int companions : {1, 3}) {
+    for (const int companions : {1, 3, 7}) {
         const SpectrumTotals together = render(companions, 512);
         double statistic = 0.0;
         int used = 0;

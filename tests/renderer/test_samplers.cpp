@@ -2,48 +2,94 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
+#include "formats/units.h"
 #include "renderer/core/camera.h"
-#include "renderer/core/phase.h"
+#include "renderer/core/medium.h"
 #include "renderer/core/surface_scattering.h"
+#include "renderer/host/environment_map.h"
 
+/// The samplers of the renderer that are no phase functions (test_phase.cpp) against their densities.
 namespace opal {
 namespace {
 
-TEST(Samplers, RayleighCosine) {
-    EXPECT_TRUE(density_matches([](double u) { return double(sample_rayleigh_cosine(float(u))); },
-                                [](double c) { return 2.0 * double(pi_f) * double(rayleigh_phase(float(c))); }, -1.0, 1.0));
-}
-
-TEST(Samplers, HenyeyGreensteinCosine) {
-    for (const float g : {-0.6f, 0.0f, 0.3f, 0.8f, 0.95f})
-        EXPECT_TRUE(density_matches([g](double u) { return double(sample_henyey_greenstein_cosine(float(u), g)); },
-                                    [g](double c) { return 2.0 * double(pi_f) * double(henyey_greenstein_phase(float(c), g)); },
-                                    -1.0, 1.0))
-            << "g = " << g;
-}
-
-TEST(Samplers, MeanCosineOfHenyeyGreensteinIsG) {
-    const int n = 200000;
-    double sum = 0.0;
-    for (int i = 0; i < n; ++i) sum += double(sample_henyey_greenstein_cosine((float(i) + 0.5f) / float(n), 0.7f));
-    EXPECT_NEAR(sum / n, 0.7, 1e-4);
-}
-
-TEST(Samplers, DeflectKeepsTheCosine) {
-    const Vec3 direction = normalize({0.3f, -0.5f, 0.8f});
-    for (const float cosine : {-1.0f, -0.4f, 0.0f, 0.9f, 1.0f})
-        for (const float u : {0.0f, 0.37f, 0.8f}) EXPECT_NEAR(dot(direction, deflect(direction, cosine, u)), cosine, 2e-6f);
-}
-
 TEST(Samplers, CosineHemisphere) {
-    const Vec3 normal = normalize({-0.2f, 0.9f, 0.1f});
-    EXPECT_TRUE(density_matches([&](double u) { return double(dot(sample_cosine(normal, float(u), 0.3f), normal)); },
-                                [](double c) { return 2.0 * c; }, 0.0, 1.0));
+    for (const Vec3 normal : {normalize({-0.2f, 0.9f, 0.1f}), Vec3{0.0f, 0.0f, -1.0f}}) {
+        const Frame frame(normal);
+        EXPECT_TRUE(check_sampler(
+            "cosine hemisphere", SamplerDomain<2>{{0.0, -units::pi}, {1.0, units::pi}, {32, 32}},
+            [&](SamplerRandom& random) {
+                const float u1 = random.next();
+                const Vec3 direction = sample_cosine(normal, u1, random.next());
+                return SamplerPoint<2>{
+                    std::min(1.0, double(dot(direction, normal))),
+                    std::atan2(double(dot(direction, frame.bitangent)), double(dot(direction, frame.tangent)))};
+            },
+            [](SamplerPoint<2> p) { return p[0] / units::pi; }));
+    }
 }
 
 TEST(Samplers, TentFilter) {
-    EXPECT_TRUE(density_matches([](double u) { return double(sample_tent(float(u))); },
-                                [](double x) { return 1.0 - std::abs(x); }, -1.0, 1.0));
+    EXPECT_TRUE(check_inversion("tent filter", -1.0, 1.0, sample_tent, [](double x) { return 1.0 - std::abs(x); }));
+}
+
+TEST(Samplers, LensDisc) {
+    Camera camera;
+    camera.forward = {0.0f, 1.0f, 0.0f};
+    camera.right = {0.5f, 0.0f, 0.0f};
+    camera.down = {0.0f, 0.0f, -0.5f};
+    camera.aperture_radius_mm = 2.0f;
+    camera.focus_mm = 100.0f;
+    EXPECT_TRUE(check_sampler(
+        "lens", SamplerDomain<2>{{-2.001, -2.001}, {2.001, 2.001}, {32, 32}},
+        [&](SamplerRandom& random) {
+            const float u = random.next();
+            const Vec3 origin = camera_ray(camera, 0.3f, 0.8f, u, random.next()).origin;
+            return SamplerPoint<2>{double(origin.x), double(origin.z)};
+        },
+        [](SamplerPoint<2> p) { return std::hypot(p[0], p[1]) < 2.0 ? 1.0 / (4.0 * units::pi) : 0.0; }));
+}
+
+TEST(Samplers, FlightThroughAMedium) {
+    for (const float sigma_s_per_mm : {1.0e-3f, 0.7f, 500.0f}) {
+        LaneMedium<1> medium;
+        medium.sigma_mie.v[0] = sigma_s_per_mm;
+        // The largest float below 1 gives 16.7 mean free paths.
+        const double farthest_mm = 17.0 / double(sigma_s_per_mm);
+        std::uint32_t path = 0;
+        EXPECT_TRUE(check_sampler(
+            "flight", SamplerDomain<1>{{0.0}, {farthest_mm}, {64}},
+            [&](SamplerRandom&) {
+                PathRandom random(1, 0, path++);
+                LaneWeights<1> weights;
+                return SamplerPoint<1>{double(MediumFlight<1>(medium, random).advance(3.0e38f, weights))};
+            },
+            [&](SamplerPoint<1> t) { return double(sigma_s_per_mm) * std::exp(-double(sigma_s_per_mm) * t[0]); }));
+    }
+}
+
+/// Over the sine of the elevation and the azimuth, in which equal cells are equal solid angles.
+::testing::AssertionResult check_environment(const std::string& name, const EnvironmentDescription& description) {
+    const EnvironmentMap map = make_environment(description);
+    return check_sampler(
+        name, SamplerDomain<2>{{-1.0, -units::pi}, {1.0, units::pi}, {24, 48}},
+        [&](SamplerRandom& random) {
+            const float u1 = random.next();
+            const Vec3 d = sample_environment(map.view(), u1, random.next());
+            return SamplerPoint<2>{double(d.z), std::atan2(double(d.y), double(d.x))};
+        },
+        [&](SamplerPoint<2> p) {
+            const double sine = std::sqrt(1.0 - p[0] * p[0]);
+            return double(environment_pdf(map.view(), {float(sine * std::cos(p[1])), float(sine * std::sin(p[1])), float(p[0])}));
+        });
+}
+
+TEST(Samplers, Environment) {
+    EnvironmentDescription description;
+    EXPECT_TRUE(check_environment("studio", description));
+    description.rotate_deg = 75.0;
+    EXPECT_TRUE(check_environment("studio, turned", description));
+    description.kind = EnvironmentKind::constant;
+    EXPECT_TRUE(check_environment("constant environment", description));
 }
 
 }  // namespace

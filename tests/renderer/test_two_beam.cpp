@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -47,6 +48,17 @@ TEST(TwoBeam, OddsAreContinuousAtTheBandEdgeAndNeverOverflow) {
     EXPECT_TRUE(std::isfinite(block_reflection_odds(1.0e4f, 0.0f)));
 }
 
+template <int N>
+LaneOptics<N> optics_at(const CrystalParameters& crystal, const std::array<double, N>& wavelength_nm) {
+    LaneOptics<N> optics{};
+    for (int i = 0; i < N; ++i) {
+        optics.wavelength_nm[i] = float(wavelength_nm[std::size_t(i)]);
+        optics.n_eff[i] = float(effective_index(crystal));
+        optics.contrast[i] = float(std::abs(crystal.n_sphere * crystal.n_sphere - crystal.n_medium * crystal.n_medium));
+    }
+    return optics;
+}
+
 /// One thick coherent block of (111) planes at normal incidence, s polarization, n_sphere in water.
 struct Slab {
     CrystalParameters crystal;
@@ -54,13 +66,13 @@ struct Slab {
 
     Slab(double n_sphere, double layers) : crystal{250.0, n_sphere, 1.333} {
         const double g = std::sqrt(3.0) / (std::sqrt(2.0) * crystal.sphere_diameter_nm);
-        beam = {1.0f, float(g), float(permittivity_coefficient(crystal, g)), float(effective_index(crystal)), float(layers / g),
-                1.0f};
+        beam = {1.0f, float(g), float(sphere_form_factor(crystal.sphere_diameter_nm, g)), float(layers / g), false, 1.0f};
     }
     double reflectance(double wavelength_nm) const {
-        const float lanes[num_lanes] = {float(wavelength_nm), float(wavelength_nm), float(wavelength_nm), float(wavelength_nm)};
-        PileOdds odds;
-        return pile_odds(beam, lanes, odds) ? double(odds.s(0) / (1.0f + odds.s(0))) : 0.0;
+        float rate_per_mm[1];
+        if (!reflection_rates(beam, optics_at<1>(crystal, {wavelength_nm}), 1.0e30f, rate_per_mm)) return 0.0;
+        const double odds = double(rate_per_mm[0]) * double(beam.block_nm) * 1.0e-6;
+        return odds / (1.0 + odds);
     }
 };
 
@@ -121,32 +133,48 @@ TEST(TwoBeam, PileEqualsTheRandomWalk) {
         }
 }
 
-TEST(TwoBeam, TurningDensityIsTheDerivativeOfTheReflectance) {
-    PileOdds odds{};
-    odds.odds[0] = 3.7f;
-    odds.odds[num_lanes] = 0.2f;
-    for (float x = 0.05f; x < 0.95f; x += 0.1f) {
-        const double slope = double(odds.reflectance(0, x + 1e-3f) - odds.reflectance(0, x - 1e-3f)) / 2e-3;
-        EXPECT_NEAR(slope, double(odds.turning_density(0, x)), 2e-3);
+TEST(TwoBeam, SaturationTakesAtMostWhatItSays) {
+    // Odds N become N A / (N + A): the reflectance falls by less than 1 / A, whatever it is.
+    const Slab slab(1.45, 3000.0);
+    const double length_mm = double(slab.beam.block_nm) * 1.0e-6;
+    for (double wavelength = 560.0; wavelength < 600.0; wavelength += 0.05) {
+        float full[1], saturated[1];
+        ASSERT_TRUE(reflection_rates(slab.beam, optics_at<1>(slab.crystal, {wavelength}), 1.0e30f, full));
+        ASSERT_TRUE(reflection_rates(slab.beam, optics_at<1>(slab.crystal, {wavelength}), float(100.0 / length_mm), saturated));
+        const double a = double(full[0]) * length_mm, b = double(saturated[0]) * length_mm;
+        const double loss = a / (1.0 + a) - b / (1.0 + b);
+        EXPECT_GE(loss, -1e-6);
+        EXPECT_LE(loss, 0.01);
     }
 }
 
-TEST(TwoBeam, ShortCrossingsAreOneThinBlock) {
-    BeamGeometry beam{0.5f, 0.004f, 0.03f, 1.42f, 0.0f, 0.0f};
-    set_blocks(beam, 10000.0f, 25000.0f);
-    EXPECT_FLOAT_EQ(beam.block_nm, 5000.0f);
-    EXPECT_FLOAT_EQ(beam.blocks, 1.0f);
-    set_blocks(beam, 1.0e6f, 25000.0f);
-    EXPECT_FLOAT_EQ(beam.block_nm, 25000.0f);
-    EXPECT_FLOAT_EQ(beam.blocks, 20.0f);
+TEST(TwoBeam, LanesEqualOneAnother) {
+    const Slab slab(1.45, 100.0);
+    for (const bool p_polarized : {false, true})
+        for (const float cosine : {0.3f, 0.8f, 1.0f}) {
+            BeamGeometry beam = slab.beam;
+            beam.cosine = cosine;
+            beam.p_polarized = p_polarized;
+            float together[8], alone[1];
+            const std::array<double, 8> wavelengths = {400, 463, 520, 576, 579, 581, 700, 800};
+            const bool any = reflection_rates(beam, optics_at<8>(slab.crystal, wavelengths), 1.0e4f, together);
+            for (std::size_t i = 0; i < 8; ++i) {
+                const bool one = reflection_rates(beam, optics_at<1>(slab.crystal, {wavelengths[i]}), 1.0e4f, alone);
+                if (!any) {
+                    EXPECT_FALSE(one);
+                    continue;
+                }
+                EXPECT_NEAR(double(together[i]), one ? double(alone[0]) : 0.0, 2e-5 * (one ? double(alone[0]) : 1.0));
+            }
+        }
 }
 
 TEST(TwoBeam, NothingIsReflectedFarFromBragg) {
-    BeamGeometry beam{0.005f, 0.004f, 0.03f, 1.42f, 0.0f, 0.0f};
-    set_blocks(beam, 1.0e6f, 25000.0f);
-    const float lanes[num_lanes] = {400.0f, 500.0f, 600.0f, 700.0f};
-    PileOdds odds;
-    EXPECT_FALSE(pile_odds(beam, lanes, odds));
+    const Slab slab(1.45, 100.0);
+    BeamGeometry beam = slab.beam;
+    beam.cosine = 0.005f;
+    float rate_per_mm[4];
+    EXPECT_FALSE(reflection_rates(beam, optics_at<4>(slab.crystal, {400.0, 500.0, 600.0, 700.0}), 1.0e30f, rate_per_mm));
 }
 
 }  // namespace

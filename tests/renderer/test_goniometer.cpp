@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "formats/units.h"
+#include "goniometer.h"
+#include "small_opal.h"
+
+namespace opal {
+namespace {
+
+/// Quaternion that turns the lattice's [111] onto +Z.
+openvdb::math::Quat<float> stacking_axis_up() {
+    const openvdb::Vec3f axis = openvdb::Vec3f(1.0f, -1.0f, 0.0f).unit();
+    return {axis, float(std::acos(std::sqrt(1.0 / 3.0)))};
+}
+
+/// A plate of one grain, its (111) planes along its faces.
+OpalAsset oriented_plate(const OpalConstants& constants) {
+    SmallOpal small;
+    small.radius_mm = 4.0;
+    small.half_thickness_mm = 0.5;
+    small.grains = 1;
+    small.constants = constants;
+    OpalAsset asset = small.make();
+    asset.grain_orientations = {stacking_axis_up()};
+    return asset;
+}
+
+/// Wavelength in the middle of the band in which a plate sends more than half of the light back to the side it came from.
+double measured_peak_nm(const Goniometer& goniometer, double angle_rad, double expected_nm) {
+    const Vec3 direction{float(std::sin(angle_rad)), 0.0f, float(-std::cos(angle_rad))};
+    double first_nm = 0.0, last_nm = 0.0;
+    for (int step = -80; step <= 80; ++step) {
+        const double wavelength_nm = expected_nm * (1.0 + 2.5e-4 * step);
+        const auto reading = goniometer.radiance(direction, 0.05, wavelength_nm, 400, 1);
+        if (reading.mean < 0.5) continue;
+        if (first_nm == 0.0) first_nm = wavelength_nm;
+        last_nm = wavelength_nm;
+    }
+    return 0.5 * (first_nm + last_nm);
+}
+
+/// lambda = 2 D sqrt(n^2 - sin^2 theta), D the distance of the planes, theta the angle in air, n at that very wavelength.
+double bragg_snell_nm(const OpalConstants& constants, double angle_rad) {
+    double wavelength_nm = 550.0;
+    for (int i = 0; i < 50; ++i) {
+        const double n =
+            fcc_filling * constants.n_sphere.at(wavelength_nm) + (1.0 - fcc_filling) * constants.n_medium.at(wavelength_nm);
+        wavelength_nm =
+            2.0 * std::sqrt(2.0 / 3.0) * constants.sphere_diameter_nm * std::sqrt(n * n - std::pow(std::sin(angle_rad), 2));
+    }
+    return wavelength_nm;
+}
+
+void expect_bragg_snell(const OpalConstants& constants) {
+    const ScratchFolder folder;
+    write_opal_asset(oriented_plate(constants), folder / "plate.vdb");
+    write_cap(folder / "above.exr", {0.0f, 0.0f, 1.0f}, 90.0);
+    const Goniometer goniometer("[environment]\nfile = '" + (folder / "above.exr").string() +
+                                    "'\n[[object]]\nkind = \"opal\"\nfile = '" + (folder / "plate.vdb").string() + "'\n",
+                                2.0);
+    for (double angle_deg = 0.0; angle_deg <= 60.0; angle_deg += 10.0) {
+        const double angle_rad = units::rad_from_deg(angle_deg);
+        const double expected_nm = bragg_snell_nm(constants, angle_rad);
+        EXPECT_NEAR(measured_peak_nm(goniometer, angle_rad, expected_nm), expected_nm, 0.003 * expected_nm)
+            << angle_deg << " deg";
+    }
+}
+
+TEST(Goniometer, PlatesPeakWhereBraggAndSnellSay) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 250.0;
+    expect_bragg_snell(small.constants);
+}
+
+TEST(Goniometer, PlatesThatDisperseDoSoToo) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 230.0;
+    small.constants.n_sphere = RefractiveIndex::of_material("silica");
+    small.constants.n_medium = RefractiveIndex::of_material("water");
+    expect_bragg_snell(small.constants);
+}
+
+/// Emitter and detector change places: the flux must not. The sample is a ball of grains in random orientations; directions 70
+/// degrees apart, so that what arrives was turned by planes, by scattering or by the surface more than once.
+void expect_reciprocal(const SmallOpal& small, const std::string& settings, double wavelength_nm, int paths) {
+    const ScratchFolder folder;
+    write_opal_asset(small.make(), folder / "ball.vdb");
+    write_cap(folder / "a.exr", normalize({0.2f, -0.3f, 1.0f}), 40.0);
+    write_cap(folder / "b.exr", normalize({1.0f, 0.3f, -0.1f}), 40.0);
+    const auto flux = [&](const char* emitter, const char* detector, std::uint64_t seed) {
+        const Goniometer goniometer("[environment]\nfile = '" + (folder / emitter).string() +
+                                        "'\n[[object]]\nkind = \"opal\"\nfile = '" + (folder / "ball.vdb").string() + "'\n" +
+                                        settings,
+                                    1.05 * small.radius_mm);
+        return goniometer.exchange(read_environment(folder / detector), wavelength_nm, paths, seed);
+    };
+    const auto forth = flux("a.exr", "b.exr", 1), back = flux("b.exr", "a.exr", 2);
+    const double error = std::hypot(forth.standard_error, back.standard_error);
+    EXPECT_NEAR(forth.mean, back.mean, 3.0 * error) << wavelength_nm << " nm";
+    EXPECT_LT(error, 0.015 * forth.mean) << "too noisy to say anything";
+}
+
+TEST(Reciprocity, OfManyGrains) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 300.0;
+    small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.05);
+    for (const double wavelength_nm : {460.0, 600.0}) expect_reciprocal(small, "", wavelength_nm, 200000);
+}
+
+TEST(Reciprocity, OfManyGrainsInAirWithScatteringAndDisorder) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 300.0;
+    small.constants.n_medium = 1.0;
+    small.constants.sigma_s_rayleigh_400nm_per_mm = 0.05;
+    small.constants.sigma_s_mie_per_mm = 0.05;
+    small.constants.mosaic_spread_deg = 2.0;
+    small.constants.stacking_fault_probability = 0.1;
+    small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.05);
+    expect_reciprocal(small, "", 520.0, 200000);
+}
+
+}  // namespace
+}  // namespace opal
