@@ -55,10 +55,10 @@ std::size_t flat_index(const int* size, int x, int y, int z) {
 }
 
 template <typename Visit>
-void for_each_cell(const MajorantView& grid, const CellRange& range, const Visit& visit) {
+void for_each_cell(const CellRange& range, const Visit& visit) {
     for (int z = range.first[2]; z <= range.last[2]; ++z)
         for (int y = range.first[1]; y <= range.last[1]; ++y)
-            for (int x = range.first[0]; x <= range.last[0]; ++x) visit(flat_index(grid.size, x, y, z));
+            for (int x = range.first[0]; x <= range.last[0]; ++x) visit(x, y, z);
 }
 
 /// Iterates over the active values above the leaves.
@@ -74,45 +74,56 @@ openvdb::CoordBBox voxel_box(const openvdb::Coord& voxel) {
 
 }  // namespace
 
-MajorantGrid::MajorantGrid(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm, int longest_side) {
+MajorantGrid::MajorantGrid(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm, int longest_side)
+    : MajorantGrid(reached(fields, bounds_mm, longest_side)) {
+    fill_unreached(fields);
+}
+
+MajorantGrid MajorantGrid::reached(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm, int longest_side) {
     const openvdb::Vec3d extents_mm = bounds_mm.extents();
     const double cell_mm = std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / longest_side;
+    MajorantView geometry;
     for (int axis = 0; axis < 3; ++axis)
-        geometry_.size[axis] = std::clamp(int(std::ceil(extents_mm[axis] / cell_mm - 1.0e-6)), 1, longest_side);
-    geometry_.low_mm = {float(bounds_mm.min().x()), float(bounds_mm.min().y()), float(bounds_mm.min().z())};
-    geometry_.cells_per_mm = float(1.0 / cell_mm);
-    cells_.assign(flat_index(geometry_.size, 0, 0, geometry_.size[2]), nothing);
-    for (int field = 0; field < num_medium_fields; ++field)
-        if (fields[std::size_t(field)]) add_field(field, *fields[std::size_t(field)]);
-    for (MajorantCell& cell : cells_) {
-        bool occupied = true;
-        for (int field = 0; field < num_medium_fields; ++field) {
-            const auto& grid = fields[std::size_t(field)];
-            if (!grid) cell.min[field] = cell.max[field] = 1.0f;
-            if (cell.min[field] <= cell.max[field]) continue;
-            occupied = false;
-            cell.min[field] = cell.max[field] = grid->background();
-        }
-        occupied_.push_back(occupied);
+        geometry.size[axis] = std::clamp(int(std::ceil(extents_mm[axis] / cell_mm - 1.0e-6)), 1, longest_side);
+    geometry.low_mm = {float(bounds_mm.min().x()), float(bounds_mm.min().y()), float(bounds_mm.min().z())};
+    geometry.cells_per_mm = float(1.0 / cell_mm);
+    MajorantGrid grid(std::vector<MajorantCell>(flat_index(geometry.size, 0, 0, geometry.size[2]), nothing), geometry);
+    for (int field = 0; field < num_medium_fields; ++field) {
+        if (fields[std::size_t(field)])
+            grid.add_field(field, *fields[std::size_t(field)]);
+        else
+            for (MajorantCell& cell : grid.cells_) widen(cell, field, 1.0f, 1.0f);
     }
+    return grid;
+}
+
+void MajorantGrid::fill_unreached(const MediumFieldGrids& fields) {
+    for (MajorantCell& cell : cells_)
+        for (int field = 0; field < num_medium_fields; ++field)
+            if (cell.min[field] > cell.max[field]) cell.min[field] = cell.max[field] = fields[std::size_t(field)]->background();
 }
 
 MajorantGrid::MajorantGrid(std::vector<MajorantCell> cells, const MajorantView& geometry)
-    : cells_(std::move(cells)), occupied_(cells_.size(), true), geometry_(geometry) {}
+    : cells_(std::move(cells)), geometry_(geometry) {}
 
 MajorantGrid MajorantGrid::fitted(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm,
                                   const std::array<double, num_medium_fields>& per_mm) {
-    MajorantGrid best(fields, bounds_mm, finest_longest_side);
-    for (MajorantGrid next = best; next.geometry_.size[0] > 1 || next.geometry_.size[1] > 1 || next.geometry_.size[2] > 1;) {
+    MajorantGrid best = reached(fields, bounds_mm, finest_longest_side);
+    double least = best.cost_per_mm(per_mm);
+    for (MajorantGrid next = best; next.cells_.size() > 1;) {
         next = next.coarser();
-        if (next.cost_per_mm(per_mm) <= best.cost_per_mm(per_mm)) best = next;
+        const double cost = next.cost_per_mm(per_mm);
+        if (cost > least) continue;
+        least = cost;
+        best = next;
     }
+    best.fill_unreached(fields);
     return best;
 }
 
 void MajorantGrid::add_field(int field, const openvdb::FloatGrid& grid) {
     const auto add = [&](const CellRange& range, float low, float high) {
-        for_each_cell(geometry_, range, [&](std::size_t cell) { widen(cells_[cell], field, low, high); });
+        for_each_cell(range, [&](int x, int y, int z) { widen(cells_[flat_index(geometry_.size, x, y, z)], field, low, high); });
     };
     const openvdb::math::Transform& transform = grid.transform();
     openvdb::CoordBBox box;
@@ -136,43 +147,30 @@ MajorantGrid MajorantGrid::coarser() const {
     MajorantView geometry = geometry_;
     geometry.cells_per_mm *= 0.5f;
     for (int& size : geometry.size) size = (size + 1) / 2;
-    MajorantGrid result(std::vector<MajorantCell>(flat_index(geometry.size, 0, 0, geometry.size[2]), nothing), geometry);
-    std::fill(result.occupied_.begin(), result.occupied_.end(), false);
-    // Empty cells widen nothing unless there are only such.
-    for (const bool occupied : {true, false})
-        for (int z = 0; z < geometry_.size[2]; ++z)
-            for (int y = 0; y < geometry_.size[1]; ++y)
-                for (int x = 0; x < geometry_.size[0]; ++x) {
-                    const std::size_t from = flat_index(geometry_.size, x, y, z);
-                    const std::size_t to = flat_index(geometry.size, x / 2, y / 2, z / 2);
-                    if (occupied_[from] != occupied || (!occupied && result.occupied_[to])) continue;
-                    for (int f = 0; f < num_medium_fields; ++f)
-                        widen(result.cells_[to], f, cells_[from].min[f], cells_[from].max[f]);
-                    if (occupied) result.occupied_[to] = true;
-                }
-    return result;
+    std::vector<MajorantCell> merged(flat_index(geometry.size, 0, 0, geometry.size[2]), nothing);
+    const CellRange all{{0, 0, 0}, {geometry_.size[0] - 1, geometry_.size[1] - 1, geometry_.size[2] - 1}};
+    std::size_t from = 0;
+    for_each_cell(all, [&](int x, int y, int z) {
+        const MajorantCell& cell = cells_[from++];
+        for (int f = 0; f < num_medium_fields; ++f)
+            widen(merged[flat_index(geometry.size, x / 2, y / 2, z / 2)], f, cell.min[f], cell.max[f]);
+    });
+    return MajorantGrid(std::move(merged), geometry);
 }
 
 double MajorantGrid::cost_per_mm(const std::array<double, num_medium_fields>& per_mm) const {
     double collisions_per_mm = 0.0;
-    std::size_t occupied = 0;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        if (!occupied_[i]) continue;
-        ++occupied;
+    std::size_t reached = 0;
+    for (const MajorantCell& cell : cells_) {
+        double rest_per_mm = 0.0;
         for (int f = 0; f < num_medium_fields; ++f)
-            collisions_per_mm += per_mm[std::size_t(f)] * (double(cells_[i].max[f]) - double(cells_[i].min[f]));
+            rest_per_mm += per_mm[std::size_t(f)] * (double(cell.max[f]) - double(cell.min[f]));
+        if (!(rest_per_mm >= 0.0)) continue;  // a cell outside, which some field does not reach
+        collisions_per_mm += rest_per_mm;
+        ++reached;
     }
-    const bool single = cells_.size() == 1;
-    return collision_cost * collisions_per_mm / double(std::max<std::size_t>(1, occupied)) +
-           (single ? 0.0 : crossings_per_edge * double(geometry_.cells_per_mm));
-}
-
-MajorantCell MajorantGrid::total() const {
-    MajorantCell result = nothing;
-    for (std::size_t i = 0; i < cells_.size(); ++i)
-        if (occupied_[i])
-            for (int f = 0; f < num_medium_fields; ++f) widen(result, f, cells_[i].min[f], cells_[i].max[f]);
-    return result;
+    const double crossings_per_mm = cells_.size() == 1 ? 0.0 : crossings_per_edge * double(geometry_.cells_per_mm);
+    return collision_cost * collisions_per_mm / double(std::max<std::size_t>(1, reached)) + crossings_per_mm;
 }
 
 void check_majorants(const MediumFieldGrids& fields, const MajorantView& majorants,
@@ -189,8 +187,9 @@ void check_majorants(const MediumFieldGrids& fields, const MajorantView& majoran
         };
         const openvdb::FloatGrid& grid = *fields[field];
         const auto require_box = [&](const openvdb::CoordBBox& box, float value) {
-            for_each_cell(majorants, cells_that_read(majorants, grid.transform(), box),
-                          [&](std::size_t cell) { require(box.min(), value, majorants.cells[cell]); });
+            for_each_cell(cells_that_read(majorants, grid.transform(), box), [&](int x, int y, int z) {
+                require(box.min(), value, majorants.cells[flat_index(majorants.size, x, y, z)]);
+            });
         };
         openvdb::CoordBBox box;
         for (auto tile = active_tiles(grid); tile; ++tile) {

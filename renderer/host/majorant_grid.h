@@ -34,17 +34,16 @@ class MajorantGrid {
     const std::vector<MajorantCell>& cells() const { return cells_; }
     /// Valid while this object stays where it is.
     MajorantView view() const;
-    /// Cost of a flight per mm, in crossings of cells.
-    double cost_per_mm(const std::array<double, num_medium_fields>& per_mm) const;
-    /// Bounds over all cells.
-    MajorantCell total() const;
 
   private:
-    MajorantGrid coarser() const;
+    /// Without values in the cells that a field does not reach.
+    static MajorantGrid reached(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm, int longest_side);
+    void fill_unreached(const MediumFieldGrids& fields);
     void add_field(int field, const openvdb::FloatGrid& grid);
+    MajorantGrid coarser() const;
+    double cost_per_mm(const std::array<double, num_medium_fields>& per_mm) const;
 
     std::vector<MajorantCell> cells_;
-    std::vector<bool> occupied_;
     MajorantView geometry_;
 };
 

@@ -34,7 +34,7 @@ SmallOpal varied() {
 
 LaneMedium<4> unlike_lanes() {
     LaneMedium<4> medium;
-    const float sigma_a[] = {0.3f, 0.7f, 0.02f, 0.5f}, rayleigh[] = {0.5f, 1.0f, 0.3f, 0.1f}, mie[] = {1.0f, 0.8f, 1.2f, 1.0f};
+    const float sigma_a[] = {0.3f, 0.5f, 0.02f, 0.4f}, rayleigh[] = {0.5f, 0.8f, 0.3f, 0.1f}, mie[] = {0.5f, 0.4f, 0.6f, 0.5f};
     for (int i = 0; i < 4; ++i) {
         medium.sigma_a.v[i] = sigma_a[i];
         medium.sigma_rayleigh.v[i] = rayleigh[i];
