@@ -114,7 +114,9 @@ class MediaBench {
     void measure(OpalView opal, const LaneMedium<4>& lanes, const MajorantGrid& majorants, MediaBenchRow row) {
         std::vector<MajorantCell> cells = majorants.cells();
         if (row.method == "ratio")
-            for (MajorantCell& cell : cells) std::fill(std::begin(cell.min), std::end(cell.min), 0.0f);
+            for (MajorantCell& cell : cells)
+                for (int f = 0; f < num_medium_fields; ++f)
+                    if (opal.medium.fields[f].grid) cell.min[f] = 0.0f;
         const MajorantGrid grid(std::move(cells), majorants.view());
         opal.medium.majorants = grid.view();
         double squares = 0.0;
