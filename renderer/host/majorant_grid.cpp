@@ -15,7 +15,7 @@ namespace {
 constexpr int finest_longest_side = 64;
 /// A tentative collision (logarithm, random numbers, interpolation in the fields) costs as much as crossing so many cells:
 /// measured (opal-bench media).
-constexpr double collision_cost = 5.0;
+constexpr double collision_cost = 10.0;
 /// A line through a grid of cubes meets 3/2 faces per edge length, averaged over directions.
 constexpr double crossings_per_edge = 1.5;
 /// Positions are rounded before a field is read: a cell counts what lies this little beyond it, in voxels.

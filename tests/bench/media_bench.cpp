@@ -16,7 +16,7 @@ namespace opal {
 namespace {
 
 constexpr float radius_mm = 3.0f;
-constexpr double seconds_per_row = 0.25;
+constexpr double seconds_per_row = 0.2;
 using FieldFunction = std::function<double(const openvdb::Vec3d&)>;
 
 double waves(const openvdb::Vec3d& p) {
@@ -104,7 +104,8 @@ class MediaBench {
                 measure(opal, lanes, MajorantGrid(grids, bounds, row.cells), row);
             }
         row.fitted = true;
-        row.cells = *std::max_element(fields.majorants()->view().size, fields.majorants()->view().size + 3);
+        const MajorantView fitted = fields.majorants()->view();
+        row.cells = std::max({fitted.size[0], fitted.size[1], fitted.size[2]});
         for (const char* method : {"residual", "ratio"}) {
             row.method = method;
             measure(opal, lanes, *fields.majorants(), row);
