@@ -12,6 +12,7 @@
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
+#include "formats/illuminant.h"
 #include "formats/report.h"
 #include "formats/scene.h"
 #include "formats_generated/version.h"
@@ -174,7 +175,8 @@ int render_command(int argc, char** argv) {
     const double loading_s = loading.seconds();
 
     catch_interrupts();
-    Film film(scene.render.width, scene.render.height, scene.film.spectral);
+    const Xyz white = xyz_of(illuminant_spectrum(scene.film.white));
+    Film film(scene.render.width, scene.render.height, scene.film.spectral, white);
     RenderOutcome outcome;
     {
         Progress progress("rendering");
@@ -185,11 +187,14 @@ int render_command(int argc, char** argv) {
 
     Image image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, image);
-    image.attributes = {{"opal:command", options.command()},
-                        {"opal:scene", scene_to_toml(scene)},
-                        {"opal:recipe", host.recipe_toml()},
-                        {"opal:version", OPAL_VERSION_STRING},
-                        {"Software", std::string("opal-render ") + OPAL_VERSION_STRING}};
+    image.attributes = {
+        {"opal:command", options.command()},
+        {"opal:scene", scene_to_toml(scene)},
+        {"opal:recipe", host.recipe_toml()},
+        {"opal:white", fmt::format("xy {:.5f} {:.5f} is neutral: RGB is adapted from it to D65 by Bradford's matrix",
+                                   chromaticity_of(white).x, chromaticity_of(white).y)},
+        {"opal:version", OPAL_VERSION_STRING},
+        {"Software", std::string("opal-render ") + OPAL_VERSION_STRING}};
     write_exr(options.output, image);
     write_png(png, tone_mapped(image, scene.film.exposure_ev));
     if (!options.stats_file.empty())

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "renderer/core/spectrum_view.h"
+#include "renderer/core/upsampling.h"
 
 namespace opal {
 
-/// Light from infinity: a latitude-longitude picture of linear sRGB radiance (times D65), top row at +Z, with the tables that
-/// draw directions in proportion to it.
+/// Light from infinity: a latitude-longitude picture of colours of radiance (times the illuminant), top row at +Z, with the
+/// tables that draw directions in proportion to their luminance.
 struct EnvironmentView {
-    const Rgb* texels = nullptr;
+    const UpsampledColor* texels = nullptr;
     const float* row_cdf = nullptr;     ///< height + 1 values: which row
     const float* column_cdf = nullptr;  ///< height rows of width + 1 values: which column in the row
     int width = 0;
@@ -26,8 +26,13 @@ OPAL_HD inline void environment_uv(const EnvironmentView& environment, Vec3 dire
     v = acosf(min_of(1.0f, max_of(-1.0f, direction.z))) * (1.0f / pi_f);
 }
 
-/// Radiance from a direction, bilinear between texel centres.
-OPAL_HD inline Rgb environment_radiance(const EnvironmentView& environment, Vec3 direction) {
+/// The four texels around a direction and their shares in it, bilinear between texel centres.
+struct EnvironmentFootprint {
+    const UpsampledColor* texel[4];
+    float weight[4];
+};
+
+OPAL_HD inline EnvironmentFootprint environment_footprint(const EnvironmentView& environment, Vec3 direction) {
     float u, v;
     environment_uv(environment, direction, u, v);
     const float x = u * float(environment.width) - 0.5f, y = v * float(environment.height) - 0.5f;
@@ -35,14 +40,19 @@ OPAL_HD inline Rgb environment_radiance(const EnvironmentView& environment, Vec3
     const float tx = x - float(x0), ty = y - float(y0);
     const int columns[2] = {(x0 + environment.width) % environment.width, (x0 + 1) % environment.width};
     const int rows[2] = {max_of(y0, 0), min_of(y0 + 1, environment.height - 1)};
-    Rgb sum;
+    EnvironmentFootprint footprint;
     for (int i = 0; i < 4; ++i) {
-        const Rgb& texel = environment.texels[rows[i / 2] * environment.width + columns[i % 2]];
-        const float weight = (i % 2 ? tx : 1.0f - tx) * (i / 2 ? ty : 1.0f - ty);
-        sum.r += weight * texel.r;
-        sum.g += weight * texel.g;
-        sum.b += weight * texel.b;
+        footprint.texel[i] = environment.texels + size_t(rows[i / 2]) * size_t(environment.width) + columns[i % 2];
+        footprint.weight[i] = (i % 2 ? tx : 1.0f - tx) * (i / 2 ? ty : 1.0f - ty);
     }
+    return footprint;
+}
+
+/// Radiance over the illuminant's at one wavelength. The texels' spectra are mixed, not their colours or coefficients, so that
+/// the picture stays linear in radiance.
+OPAL_HD inline float environment_color(const SpectrumTables& tables, const EnvironmentFootprint& footprint, float wavelength_nm) {
+    float sum = 0.0f;
+    for (int i = 0; i < 4; ++i) sum += footprint.weight[i] * upsampled(tables, *footprint.texel[i], wavelength_nm);
     return sum;
 }
 

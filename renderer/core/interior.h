@@ -86,9 +86,10 @@ OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& 
 
 /// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface `surface_mm` ahead.
 template <int N>
-OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const LaneOptics<N>& optics, const LaneMedium<N>& medium,
-                                            Ray ray, float surface_mm, GrainVisit<N>& visit, LaneWeights<N>& weights,
-                                            PathRandom& random, PathCounters& counters) {
+OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWavelengths<N>& wavelengths,
+                                            const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray ray, float surface_mm,
+                                            GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random,
+                                            PathCounters& counters) {
     MediumFlight<N> flight(opal, medium, ray, weights, random, counters.majorant_violations);
     InteriorEvent event{InteriorEventKind::surface, surface_mm, ray.direction, false};
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
@@ -134,7 +135,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const LaneOpti
     if (flight.scattered()) {
         ++counters.scatterings;
         event.kind = InteriorEventKind::scattering;
-        event.direction = scatter_direction(opal.medium, flight.local(), ray.direction, weights, random);
+        event.direction = scatter_direction(opal.medium, wavelengths, flight.local(), ray.direction, weights, random);
         visit.renew();
     }
     return event;

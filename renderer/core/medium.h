@@ -5,7 +5,7 @@
 #include "renderer/core/lane_weights.h"
 #include "renderer/core/majorant_view.h"
 #include "renderer/core/path_random.h"
-#include "renderer/core/phase.h"
+#include "renderer/core/phase_function.h"
 
 /// Absorption and scattering of the opal's body along a path.
 namespace opal {
@@ -15,7 +15,7 @@ struct MediumView {
     const float* sigma_a_per_mm = nullptr;  ///< 1 nm table
     float sigma_s_rayleigh_400nm_per_mm = 0.0f;
     const float* sigma_s_mie_per_mm = nullptr;  ///< 1 nm table
-    float mie_asymmetry = 0.0f;
+    PhaseFunctionView mie_phase;
     FieldView fields[num_medium_fields];
     MajorantView majorants;  ///< of the fields; no cells where nothing varies
 };
@@ -41,15 +41,23 @@ OPAL_HD inline LaneMedium<N> lane_medium(const MediumView& view, const PathWavel
     return medium;
 }
 
-/// Draws the direction after a scattering and weighs the lanes by how likely each was to scatter so.
+/// Draws the direction after a scattering and weighs the lanes by how likely each was to scatter so. Rayleigh's phase function is
+/// the same at every wavelength; the other may not be.
 template <int N>
-OPAL_HD inline Vec3 scatter_direction(const MediumView& view, const LaneMedium<N>& local, Vec3 direction, LaneWeights<N>& weights,
-                                      PathRandom& random) {
+OPAL_HD inline Vec3 scatter_direction(const MediumView& view, const PathWavelengths<N>& wavelengths, const LaneMedium<N>& local,
+                                      Vec3 direction, LaneWeights<N>& weights, PathRandom& random) {
     const bool rayleigh = random.next() * local.sigma_s(0) < local.sigma_rayleigh.v[0];
     const Lanes<N>& chosen = rayleigh ? local.sigma_rayleigh : local.sigma_mie;
     for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= chosen.v[i] / chosen.v[0];
     const float u = random.next();
-    const float cosine = rayleigh ? sample_rayleigh_cosine(u) : sample_henyey_greenstein_cosine(u, view.mie_asymmetry);
+    if (rayleigh) return deflect(direction, sample_rayleigh_cosine(u), random.next());
+    const PhaseFunctionView& phase = view.mie_phase;
+    const float cosine = sample_phase_cosine(phase, wavelengths.wavelength_nm[0], u, phase_varies(phase) ? random.next() : 0.0f);
+    if (phase_varies(phase)) {
+        const float hero = phase_density(phase, cosine, wavelengths.wavelength_nm[0]);
+        for (int i = 1; i < weights.count; ++i)
+            weights.ratio.v[i] *= phase_density(phase, cosine, wavelengths.wavelength_nm[i]) / hero;
+    }
     return deflect(direction, cosine, random.next());
 }
 

@@ -16,22 +16,14 @@ struct PathResult {
     Lanes<N> truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
 };
 
-/// Spectra that a path needs at every light, looked up once.
+/// The illuminant at a path's wavelengths, looked up once.
 template <int N>
 struct LaneSpectra {
-    Vec3 basis[N];
     float white[N];
 
     OPAL_HD LaneSpectra(const SpectrumTables& tables, const PathWavelengths<N>& wavelengths) {
-        for (int i = 0; i < wavelengths.count; ++i) {
-            basis[i] = table_at(tables.rgb_basis, wavelengths.wavelength_nm[i]);
-            white[i] = table_at(tables.white, wavelengths.wavelength_nm[i]);
-        }
+        for (int i = 0; i < wavelengths.count; ++i) white[i] = table_at(tables.white, wavelengths.wavelength_nm[i]);
     }
-    OPAL_HD float reflectance(Rgb color, int lane) const {
-        return color.r * basis[lane].x + color.g * basis[lane].y + color.b * basis[lane].z;
-    }
-    OPAL_HD float radiance(Rgb color, int lane) const { return white[lane] * reflectance(color, lane); }
 };
 
 template <int N, class Intersector>
@@ -83,8 +75,8 @@ class PathTracer {
                     ++counters_.lost_paths;
                     return;
                 }
-                const InteriorEvent event =
-                    cross_interior(scene_.opal, optics_, medium_, ray, hit.distance_mm, visit_, weights_, random_, counters_);
+                const InteriorEvent event = cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, hit.distance_mm,
+                                                           visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
                     specular_ = true;
@@ -153,8 +145,9 @@ class PathTracer {
     OPAL_HD Ray meet_diffuse(const Ray& ray, const Surface& surface) {
         const bool front = dot(ray.direction, surface.geometric_normal) < 0.0f;
         const Vec3 normal = front ? surface.geometric_normal : -surface.geometric_normal;
-        const Rgb albedo = scene_.materials[surface.material].albedo;
-        for (int i = 0; i < weights_.count; ++i) weights_.throughput.v[i] *= spectra_.reflectance(albedo, i);
+        const UpsampledColor& albedo = scene_.materials[surface.material].albedo;
+        for (int i = 0; i < weights_.count; ++i)
+            weights_.throughput.v[i] *= upsampled(scene_.spectra, albedo, wavelengths_.wavelength_nm[i]);
         add_sampled_light(surface.position, normal);
         const float u1 = random_.next(), u2 = random_.next();
         const Vec3 direction = sample_cosine(normal, u1, u2);
@@ -174,19 +167,21 @@ class PathTracer {
         if (intersector_.occluded({offset_origin(position, normal, direction), direction})) return;
         const float cosine_pdf = cosine / pi_f;
         const float weight = square(light_pdf) / (square(light_pdf) + square(cosine_pdf));
-        add_light(environment_radiance(scene_.environment, direction), weight * cosine_pdf / light_pdf);
+        add_light(direction, weight * cosine_pdf / light_pdf);
     }
 
     OPAL_HD void add_environment(Vec3 direction) {
         float weight = 1.0f;
         if (!specular_) weight = square(pdf_) / (square(pdf_) + square(environment_pdf(scene_.environment, direction)));
-        add_light(environment_radiance(scene_.environment, direction), weight);
+        add_light(direction, weight);
     }
 
-    OPAL_HD void add_light(Rgb radiance, float weight) {
+    OPAL_HD void add_light(Vec3 direction, float weight) {
         const Lanes<N> contribution = weights_.contribution();
+        const EnvironmentFootprint footprint = environment_footprint(scene_.environment, direction);
         for (int i = 0; i < weights_.count; ++i)
-            result_.radiance.v[i] += weight * contribution.v[i] * spectra_.radiance(radiance, i);
+            result_.radiance.v[i] += weight * contribution.v[i] * spectra_.white[i] *
+                                     environment_color(scene_.spectra, footprint, wavelengths_.wavelength_nm[i]);
     }
 
     /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/alias_table.h"
 #include "renderer/core/compat.h"
 #include "renderer/core/vec.h"
 
@@ -29,13 +30,29 @@ struct Rgb {
     float r = 0.0f, g = 0.0f, b = 0.0f;
 };
 
-/// Tables over the wavelength, 360 to 830 nm in steps of 1 nm.
+/// How colours become spectra: see upsampling.h.
+enum class UpsamplingMethod { sigmoid, smits, basis };
+
+/// Smits' spectra in one bin; `secondary[i]` lacks component i.
+struct SmitsRow {
+    float white = 0.0f;
+    float secondary[3] = {};
+    float primary[3] = {};
+};
+inline constexpr int smits_rows = 10;
+inline constexpr float smits_first_nm = 380.0f;
+inline constexpr float smits_bin_nm = 34.0f;
+
+/// Tables over the wavelength, 360 to 830 nm in steps of 1 nm, but for Smits' ten bins.
 struct SpectrumTables {
     const Vec3* observer = nullptr;   ///< CIE 1931 colour matching functions over the integral of y
-    const float* white = nullptr;     ///< D65, scaled so that Y = 1
+    const float* white = nullptr;     ///< the environment's illuminant, scaled so that Y = 1
     const Vec3* rgb_basis = nullptr;  ///< reflectances of the sRGB primaries
     const float* pdf = nullptr;       ///< probability density of drawn wavelengths, 1/nm, constant within each nm
     const float* cdf = nullptr;       ///< its integral, 0 at 360 nm, 1 at 830 nm
+    const SmitsRow* smits = nullptr;
+    UpsamplingMethod upsampling = UpsamplingMethod::sigmoid;
+    AliasTable alias;  ///< of the same density; empty where the hero is drawn by inversion
 };
 
 /// Linear interpolation in a 1 nm table; wavelengths are inside the range by construction.
@@ -55,23 +72,36 @@ struct PathWavelengths {
     int count = N;  ///< lanes in use: 1 + companions
 };
 
-/// Draws the hero from the table's density by inversion and its companions by rotating the uniform number (Wilkie et al. 2014,
-/// "Hero wavelength spectral sampling"), so that each lane by itself has the table's density. Lanes beyond `count` repeat others.
+/// The 1 nm interval that holds a number in [0, 1) of the integrated density, and the place within it: inversion, monotone, so
+/// that strata of numbers are strata of wavelengths.
+OPAL_HD inline int invert_wavelength_density(const SpectrumTables& tables, float u, float& within) {
+    int low = 0;
+    for (int high = spectrum_samples - 1; high - low > 1;) {
+        const int middle = (low + high) / 2;
+        (tables.cdf[middle] <= u ? low : high) = middle;
+    }
+    within = (u - tables.cdf[low]) / (tables.cdf[low + 1] - tables.cdf[low]);
+    return low;
+}
+
+/// Draws the hero from the table's density, by the alias table where there is one, else by inversion, and its companions by
+/// rotating the hero's place in the integrated density (Wilkie et al. 2014, "Hero wavelength spectral sampling"), so that each
+/// lane by itself has the table's density and all together are spread evenly over it. Lanes beyond `count` repeat others.
 template <int N>
 OPAL_HD inline PathWavelengths<N> sample_wavelengths(const SpectrumTables& tables, float u, int count) {
     PathWavelengths<N> result;
     result.count = count;
+    const bool by_alias = tables.alias.count > 0;
+    float within;
+    int interval = by_alias ? tables.alias.sample(u, within) : invert_wavelength_density(tables, u, within);
+    const float start = by_alias ? tables.cdf[interval] + within * tables.pdf[interval] : u;
     for (int lane = 0; lane < N; ++lane) {
-        float rotated = u + float(lane % count) / float(count);
-        rotated -= floorf(rotated);
-        int low = 0, high = spectrum_samples - 1;
-        while (high - low > 1) {
-            const int middle = (low + high) / 2;
-            (tables.cdf[middle] <= rotated ? low : high) = middle;
+        if (lane > 0) {
+            const float turned = start + float(lane % count) / float(count);
+            interval = invert_wavelength_density(tables, turned - floorf(turned), within);
         }
-        const float within = (rotated - tables.cdf[low]) / (tables.cdf[low + 1] - tables.cdf[low]);
-        result.wavelength_nm[lane] = spectrum_min_nm + float(low) + min_of(within, 0.999999f);
-        result.pdf_per_nm[lane] = tables.pdf[low];
+        result.wavelength_nm[lane] = spectrum_min_nm + float(interval) + min_of(within, 0.999999f);
+        result.pdf_per_nm[lane] = tables.pdf[interval];
     }
     return result;
 }

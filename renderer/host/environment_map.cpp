@@ -8,14 +8,19 @@
 #include "formats/error.h"
 #include "formats/image.h"
 #include "formats/units.h"
+#include "renderer/host/upsampler.h"
 
 namespace opal {
 namespace {
 
-void fill_studio(EnvironmentMap& map) {
-    map.width = 1024;
-    map.height = 512;
-    map.texels.resize(std::size_t(map.width) * map.height);
+/// The picture as it was given, linear sRGB.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<Rgb> texels;
+};
+
+Picture studio_picture() {
+    Picture map{1024, 512, std::vector<Rgb>(std::size_t(1024) * 512)};
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
             const double theta = units::pi * (y + 0.5) / map.height, phi = 2.0 * units::pi * (x + 0.5) / map.width;
@@ -23,20 +28,18 @@ void fill_studio(EnvironmentMap& map) {
                                  float(std::cos(theta))};
             map.texels[std::size_t(y) * map.width + x] = studio_radiance(direction);
         }
+    return map;
 }
 
-void fill_constant(EnvironmentMap& map) {
-    map.width = 64;
-    map.height = 32;
-    map.texels.assign(std::size_t(map.width) * map.height, Rgb{1.0f, 1.0f, 1.0f});
+Picture constant_picture() {
+    return {64, 32, std::vector<Rgb>(std::size_t(64) * 32, Rgb{1.0f, 1.0f, 1.0f})};
 }
 
-void fill_from_file(EnvironmentMap& map, const std::filesystem::path& path) {
+Picture picture_from_file(const std::filesystem::path& path) {
     const Image image = read_image(path);
     if (image.num_channels() < 3 && image.num_channels() != 1)
         throw InputError(fmt::format("{}: {} channels; an environment has 1 or 3", path.string(), image.num_channels()));
-    map.width = image.width;
-    map.height = image.height;
+    Picture map{image.width, image.height, {}};
     map.texels.reserve(std::size_t(map.width) * map.height);
     const int green = image.num_channels() >= 3 ? 1 : 0, blue = image.num_channels() >= 3 ? 2 : 0;
     for (int y = 0; y < map.height; ++y)
@@ -51,14 +54,27 @@ void fill_from_file(EnvironmentMap& map, const std::filesystem::path& path) {
                                                  path.string(), column, y, component));
             map.texels.push_back(value);
         }
+    return map;
+}
+
+Picture picture_of(const EnvironmentDescription& description) {
+    switch (description.kind) {
+        case EnvironmentKind::constant:
+            return constant_picture();
+        case EnvironmentKind::file:
+            return picture_from_file(description.file);
+        case EnvironmentKind::studio:
+            break;
+    }
+    return studio_picture();
 }
 
 /// Weight of each texel for drawing directions: the mean of its 3x3 neighbourhood, since bilinear lookup spreads it, times its
 /// solid angle.
-void build_tables(EnvironmentMap& map) {
+void build_tables(const Picture& picture, EnvironmentMap& map) {
     const auto luminance = [&](int x, int y) {
         const int column = (x + map.width) % map.width, row = std::min(std::max(y, 0), map.height - 1);
-        const Rgb& texel = map.texels[std::size_t(row) * map.width + column];
+        const Rgb& texel = picture.texels[std::size_t(row) * map.width + column];
         return 0.2126 * double(texel.r) + 0.7152 * double(texel.g) + 0.0722 * double(texel.b);
     };
     std::vector<double> row_weight(map.height);
@@ -87,25 +103,19 @@ void build_tables(EnvironmentMap& map) {
 
 }  // namespace
 
-EnvironmentMap make_environment(const EnvironmentDescription& description) {
+EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling) {
+    const Picture picture = picture_of(description);
     EnvironmentMap map;
+    map.width = picture.width;
+    map.height = picture.height;
     map.rotation_rad = units::rad_from_deg(description.rotate_deg);
-    switch (description.kind) {
-        case EnvironmentKind::studio:
-            fill_studio(map);
-            break;
-        case EnvironmentKind::constant:
-            fill_constant(map);
-            break;
-        case EnvironmentKind::file:
-            fill_from_file(map, description.file);
-            break;
+    build_tables(picture, map);
+    map.texels.reserve(picture.texels.size());
+    const UpsamplingMethod method = upsampling_method(upsampling);
+    for (const Rgb& texel : picture.texels) {
+        map.texels.push_back(upsample_radiance(method, texel));
+        map.texels.back().scale *= float(description.radiance);
     }
-    for (Rgb& texel : map.texels) {
-        const float scale = float(description.radiance);
-        texel = {texel.r * scale, texel.g * scale, texel.b * scale};
-    }
-    build_tables(map);
     return map;
 }
 

@@ -12,7 +12,7 @@ namespace opal {
 struct EnvironmentMap {
     int width = 0, height = 0;
     double rotation_rad = 0.0;
-    std::vector<Rgb> texels;
+    std::vector<UpsampledColor> texels;
     std::vector<float> row_cdf, column_cdf;
 
     EnvironmentView view() const {
@@ -20,12 +20,13 @@ struct EnvironmentMap {
     }
 };
 
-/// Loads or builds the environment of a scene: a constant, the built-in studio, or a latitude-longitude file (.exr, .hdr). Throws
-/// InputError for unreadable files and for negative or NaN texels, naming the texel.
-EnvironmentMap make_environment(const EnvironmentDescription& description);
+/// Loads or builds the environment of a scene: a constant, the built-in studio, or a latitude-longitude file (.exr, .hdr); its
+/// colours become spectra by `upsampling`. Throws InputError for unreadable files and for negative or NaN texels, naming the
+/// texel.
+EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling = Upsampling::jakob_hanika);
 
 /// Radiance of the built-in studio from a unit direction (Z up, camera in front at -Y): a large key soft box at the upper left, a
-/// strip at the right, a low fill from the front and a rim light behind, in a dim surround. Linear sRGB times D65.
+/// strip at the right, a low fill from the front and a rim light behind, in a dim surround. Linear sRGB times the illuminant.
 Rgb studio_radiance(Vec3 direction);
 
 }  // namespace opal

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/colorimetry.h"
-
 namespace opal {
 
 int spectral_bin(double wavelength_nm) {
@@ -33,8 +31,12 @@ void SpectrumTotals::add(const SpectrumTotals& other) {
     samples += other.samples;
 }
 
-Film::Film(int width, int height, bool spectral)
-    : width_(width), height_(height), spectral_(spectral), pixels_(std::size_t(width) * height) {
+Film::Film(int width, int height, bool spectral, Xyz white)
+    : width_(width),
+      height_(height),
+      spectral_(spectral),
+      adaptation_(bradford_adaptation(white, srgb_white)),
+      pixels_(std::size_t(width) * height) {
     if (spectral) spectra_.assign(pixels_.size() * num_bins, 0.0f);
 }
 
@@ -75,12 +77,12 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSamp
         if (first) totals.radiance_squared[bins[i]] += whole * whole;
     }
     ++totals.samples;
-    const Rgb3d lost_rgb = linear_srgb_from_xyz({lost_x, lost_y, lost_z});
+    const Rgb3d lost_rgb = rgb_of({lost_x, lost_y, lost_z});
     totals.truncated_rgb[0] += lost_rgb.r;
     totals.truncated_rgb[1] += lost_rgb.g;
     totals.truncated_rgb[2] += lost_rgb.b;
 
-    const Rgb3d rgb = linear_srgb_from_xyz({x, y, z});
+    const Rgb3d rgb = rgb_of({x, y, z});
     Pixel& target = pixels_[pixel];
     const double values[3] = {rgb.r, rgb.g, rgb.b};
     for (int c = 0; c < 3; ++c) {

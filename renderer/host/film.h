@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/colorimetry.h"
 #include "formats/image.h"
 #include "renderer/core/path_tracer.h"
 
@@ -45,7 +46,8 @@ FilmSample film_sample(const PathWavelengths<N>& wavelengths, const PathResult<N
 /// spectra.
 class Film {
   public:
-    Film(int width, int height, bool spectral);
+    /// RGB is adapted so that light of the chromaticity `white`, XYZ with Y = 1, is neutral (Bradford); spectra are not.
+    Film(int width, int height, bool spectral, Xyz white = srgb_white);
 
     /// Adds one path's result to a pixel and to `totals`. Pixels may be filled from different threads, each from one at a time.
     void add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals);
@@ -65,8 +67,11 @@ class Film {
         std::uint32_t samples = 0;
     };
 
+    Rgb3d rgb_of(Xyz color) const { return linear_srgb_from_xyz(adaptation_ * color); }
+
     int width_, height_;
     bool spectral_;
+    Matrix3 adaptation_;
     std::vector<Pixel> pixels_;
     std::vector<float> spectra_;
 };

@@ -12,6 +12,7 @@
 #include "renderer/core/mosaic.h"
 #include "renderer/host/opal_surface.h"
 #include "renderer/host/stacking.h"
+#include "renderer/host/upsampler.h"
 
 namespace opal {
 namespace {
@@ -72,6 +73,10 @@ Diffraction transport_model(DiffractionModel model) {
     return Diffraction::two_beam;
 }
 
+SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
+    return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
+}
+
 }  // namespace
 
 Camera make_camera(const CameraDescription& description, int width, int height) {
@@ -92,9 +97,12 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
-    : spectra_(make_spectrum_tables()), environment_(make_environment(description.environment)) {
+    : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
+                                     description.render.sampler == SamplerKind::independent})),
+      environment_(make_environment(description.environment, description.color.upsampling)) {
     for (const MaterialDescription& material : description.materials)
-        materials_.push_back({{float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])}});
+        materials_.push_back({upsample_reflectance(
+            spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])})});
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
             add_opal(object, description.opal, notices);
@@ -172,7 +180,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     opal.medium.sigma_a_per_mm = sigma_a_per_mm_.data();
     opal.medium.sigma_s_rayleigh_400nm_per_mm = float(medium_fields_->constant(MediumField::sigma_s_rayleigh_400nm));
     opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
-    opal.medium.mie_asymmetry = float(constants.mie_asymmetry);
+    if (sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
+    opal.medium.mie_phase = mie_phase_.view();
 }
 
 void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {

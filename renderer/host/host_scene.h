@@ -11,6 +11,7 @@
 #include "renderer/host/grain_grid.h"
 #include "renderer/host/medium_fields.h"
 #include "renderer/host/mesh_data.h"
+#include "renderer/host/phase_function.h"
 #include "renderer/host/spectrum_tables.h"
 
 namespace opal {
@@ -54,6 +55,7 @@ class HostScene {
     OpticalTables optics_;
     std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
     std::unique_ptr<MediumFields> medium_fields_;
+    PhaseFunction mie_phase_;
     int reciprocal_points_ = 0;
     std::string recipe_toml_;
     SceneView view_;

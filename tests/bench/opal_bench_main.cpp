@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "color_bench.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -60,6 +61,8 @@ int run_bench(int argc, char** argv) {
     modeler->add_flag("--quick", arguments.quick, "an eighth of the voxels (about a minute)");
     CLI::App* const media = app.add_subcommand("media", "flights through fields: majorants and estimators (about a minute)");
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
+    CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
+    color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -67,7 +70,12 @@ int run_bench(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         throw opal::InputError(fmt::format("{} (see opal-bench --help)", error.what()));
     }
-    return *media ? run_media(arguments.folder) : run_modeler(arguments);
+    if (color->parsed()) {
+        opal::bench_color(arguments.folder);
+        return 0;
+    }
+    if (media->parsed()) return run_media(arguments.folder);
+    return run_modeler(arguments);
 }
 
 }  // namespace

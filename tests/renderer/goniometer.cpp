@@ -69,7 +69,8 @@ Goniometer::Reading Goniometer::exchange(const EnvironmentMap& detector, double 
         const RandomBlock block = random_block(seed, RandomStream::bench, std::uint64_t(path), 0);
         const Vec3 towards = sample_environment(view, uniform_float(block.value[0]), uniform_float(block.value[1]));
         const float pdf = environment_pdf(view, towards);
-        const double sensitivity = pdf > 0.0f ? double(environment_radiance(view, towards).g / pdf) : 0.0;
+        const float color = environment_color(scene_.view().spectra, environment_footprint(view, towards), float(wavelength_nm));
+        const double sensitivity = pdf > 0.0f ? double(color / pdf) : 0.0;
         const Ray ray =
             towards_disc(-towards, radius_mm_, 2.0 * radius_mm_, uniform_float(block.value[2]), uniform_float(block.value[3]));
         mean.add(sensitivity * trace(ray, wavelength_nm, std::uint32_t(path), seed));

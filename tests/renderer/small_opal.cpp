@@ -99,7 +99,7 @@ Rendered render_text(const std::string& scene_toml, int samples) {
     std::vector<std::string> notices;
     const HostScene host(scene, notices);
     const EmbreeScene intersector(host.meshes());
-    Film film(scene.render.width, scene.render.height, scene.film.spectral);
+    Film film(scene.render.width, scene.render.height, scene.film.spectral, xyz_of(illuminant_spectrum(scene.film.white)));
     Rendered rendered;
     rendered.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](double) {});
     rendered.image = film.to_image();
