@@ -138,7 +138,7 @@ nlohmann::json make_report(const SceneDescription& scene, const HostScene& host,
               {"truncated_paths", counters.truncated_paths},
               {"lost_paths", counters.lost_paths},
               {"not_a_number", counters.not_a_number},
-              {"majorant_violations", 0}}},
+              {"majorant_violations", counters.majorant_violations}}},
             {"paths_per_second", double(samples) / std::max(1.0e-9, outcome.seconds)},
             {"truncated_rgb",
              {outcome.totals.truncated_rgb[0] / double(samples), outcome.totals.truncated_rgb[1] / double(samples),
@@ -206,6 +206,9 @@ int render_command(int argc, char** argv) {
                scene.render.width, scene.render.height, outcome.finished_samples, format_duration(outcome.seconds),
                double(film.total_samples()) / std::max(1.0e-9, outcome.seconds), counters.truncated_paths, counters.lost_paths,
                counters.not_a_number);
+    if (counters.majorant_violations > 0)
+        fmt::print(stderr, "opal-render: warning: {} collisions met a field above its majorant; please report the scene\n",
+                   counters.majorant_violations);
     if (counters.not_a_number > 0)
         fmt::print(stderr, "opal-render: warning: {} samples were not numbers and count as black; please report the scene\n",
                    counters.not_a_number);

@@ -3,7 +3,7 @@
 
 #include "renderer/core/ewald_turn.h"
 #include "renderer/core/grain_visit.h"
-#include "renderer/core/medium.h"
+#include "renderer/core/medium_flight.h"
 
 /// Transport inside the opal: grains met one after another, each with its planes; scattering and absorption on the way.
 namespace opal {
@@ -18,6 +18,7 @@ struct PathCounters {
     uint64_t lost_paths = 0;        ///< left the opal through a gap of its surface
     uint64_t truncated_paths = 0;
     uint64_t not_a_number = 0;
+    uint64_t majorant_violations = 0;  ///< tentative collisions where a field exceeds its bounds
 };
 
 enum class InteriorEventKind { surface, diffraction, scattering };
@@ -89,7 +90,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                                             const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray ray, float surface_mm,
                                             GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random,
                                             PathCounters& counters) {
-    MediumFlight<N> flight(medium, random);
+    MediumFlight<N> flight(opal, medium, ray, weights, random, counters.majorant_violations);
     InteriorEvent event{InteriorEventKind::surface, surface_mm, ray.direction, false};
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
         const float scale = opal.world_from_object.scale;

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/field_lookup.h"
 #include "renderer/core/lane_weights.h"
+#include "renderer/core/majorant_view.h"
 #include "renderer/core/path_random.h"
 #include "renderer/core/phase_function.h"
 
 /// Absorption and scattering of the opal's body along a path.
 namespace opal {
 
-/// The opal's body as the transport reads it.
+/// The opal's body as the transport reads it: coefficients, and the fields that multiply them where they vary.
 struct MediumView {
     const float* sigma_a_per_mm = nullptr;  ///< 1 nm table
     float sigma_s_rayleigh_400nm_per_mm = 0.0f;
     const float* sigma_s_mie_per_mm = nullptr;  ///< 1 nm table
     PhaseFunctionView mie_phase;
+    FieldView fields[num_medium_fields];
+    MajorantView majorants;  ///< of the fields; no cells where nothing varies
 };
 
-/// Its coefficients for the lanes of a path, per mm.
+/// Its coefficients for the lanes of a path, per mm; where a field varies, per unit of the field.
 template <int N>
 struct LaneMedium {
     Lanes<N> sigma_a, sigma_rayleigh, sigma_mie;
@@ -36,38 +40,6 @@ OPAL_HD inline LaneMedium<N> lane_medium(const MediumView& view, const PathWavel
     }
     return medium;
 }
-
-/// One straight flight through the medium, followed piece by piece. Absorption goes into the throughput; every lane's probability
-/// of not having scattered into its ratio.
-template <int N>
-class MediumFlight {
-  public:
-    OPAL_HD MediumFlight(const LaneMedium<N>& medium, PathRandom& random) : medium_(medium) {
-        const float sigma_s = medium.sigma_s(0);
-        scatter_mm_ = sigma_s > 0.0f ? -logf(1.0f - random.next()) / sigma_s : 3.0e38f;
-    }
-
-    /// Goes on to `distance_mm` from the flight's start, or to where the hero scatters before that. Returns the distance reached.
-    OPAL_HD float advance(float distance_mm, LaneWeights<N>& weights) {
-        const float end_mm = min_of(distance_mm, scatter_mm_);
-        const float step_mm = end_mm - reached_mm_;
-        for (int i = 0; i < weights.count; ++i) weights.throughput.v[i] *= expf(-medium_.sigma_a.v[i] * step_mm);
-        for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= expf((medium_.sigma_s(0) - medium_.sigma_s(i)) * step_mm);
-        reached_mm_ = end_mm;
-        return end_mm;
-    }
-
-    /// Whether the flight ended by scattering at the distance that `advance` returned.
-    OPAL_HD bool scattered() const { return reached_mm_ == scatter_mm_; }
-
-    /// The hero's coefficients where it scattered, and the lanes'.
-    OPAL_HD const LaneMedium<N>& local() const { return medium_; }
-
-  private:
-    const LaneMedium<N>& medium_;
-    float scatter_mm_;
-    float reached_mm_ = 0.0f;
-};
 
 /// Draws the direction after a scattering and weighs the lanes by how likely each was to scatter so. Rayleigh's phase function is
 /// the same at every wavelength; the other may not be.

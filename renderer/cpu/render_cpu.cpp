@@ -22,6 +22,7 @@ void add_counters(PathCounters& sum, const PathCounters& part) {
     sum.lost_paths += part.lost_paths;
     sum.truncated_paths += part.truncated_paths;
     sum.not_a_number += part.not_a_number;
+    sum.majorant_violations += part.majorant_violations;
 }
 
 struct TileSums {

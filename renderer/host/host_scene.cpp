@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "formats/error.h"
-#include "formats/field_summary.h"
 #include "formats/opal_asset.h"
 #include "formats/units.h"
 #include "renderer/core/mosaic.h"
@@ -74,26 +73,6 @@ Diffraction transport_model(DiffractionModel model) {
     return Diffraction::two_beam;
 }
 
-/// The transport knows one value of each coefficient in the whole opal.
-struct MeanCoefficients {
-    double sigma_a_scale;
-    double sigma_s_rayleigh_400nm_per_mm;
-    double sigma_s_mie_per_mm;
-};
-
-MeanCoefficients mean_coefficients(const OpalAsset& asset, const std::string& file, std::vector<std::string>& notices) {
-    const auto mean = [&](const openvdb::FloatGrid::Ptr& field, const char* name, double constant) {
-        if (!field) return constant;
-        const FieldSummary summary = summarize_field(*field, asset.shape);
-        if (summary.min != summary.max)
-            notices.push_back(fmt::format("{}: {} varies; rendered with its mean {:.4g} so far", file, name, summary.mean));
-        return summary.mean;
-    };
-    return {mean(asset.sigma_a_scale, grid_names::sigma_a_scale, 1.0),
-            mean(asset.sigma_s_rayleigh_400nm, grid_names::sigma_s_rayleigh, asset.constants.sigma_s_rayleigh_400nm_per_mm),
-            mean(asset.sigma_s_mie, grid_names::sigma_s_mie, asset.constants.sigma_s_mie_per_mm)};
-}
-
 SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
 }
@@ -157,7 +136,6 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     if (!asset.grain_id)
         throw InputError(file +
                          ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
-    const MeanCoefficients means = mean_coefficients(asset, file, notices);
 
     OpalView& opal = view_.opal;
     opal.present = true;
@@ -189,16 +167,20 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
     opal.grain_size_mm = grain_size_mm_.data();
 
+    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(opal.world_from_object.scale), file);
+    medium_fields_->attach(opal.medium);
+    const double sigma_a_scale = medium_fields_->constant(MediumField::sigma_a_scale);
+    const double sigma_s_mie_per_mm = medium_fields_->constant(MediumField::sigma_s_mie);
     for (int i = 0; i < spectrum_samples; ++i) {
         const double wavelength_nm = units::wavelength_min_nm + i;
-        sigma_a_per_mm_.push_back(float(means.sigma_a_scale * constants.sigma_a_per_mm.at(wavelength_nm)));
+        sigma_a_per_mm_.push_back(float(sigma_a_scale * constants.sigma_a_per_mm.at(wavelength_nm)));
         const SampledSpectrum& shape = constants.sigma_s_mie_shape;
-        sigma_s_mie_per_mm_.push_back(float(means.sigma_s_mie_per_mm * (shape.value.empty() ? 1.0 : shape.at(wavelength_nm))));
+        sigma_s_mie_per_mm_.push_back(float(sigma_s_mie_per_mm * (shape.value.empty() ? 1.0 : shape.at(wavelength_nm))));
     }
     opal.medium.sigma_a_per_mm = sigma_a_per_mm_.data();
-    opal.medium.sigma_s_rayleigh_400nm_per_mm = float(means.sigma_s_rayleigh_400nm_per_mm);
+    opal.medium.sigma_s_rayleigh_400nm_per_mm = float(medium_fields_->constant(MediumField::sigma_s_rayleigh_400nm));
     opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
-    if (means.sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
+    if (sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
     opal.medium.mie_phase = mie_phase_.view();
 }
 

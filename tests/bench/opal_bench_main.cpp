@@ -11,6 +11,7 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/opal_asset.h"
+#include "media_bench.h"
 #include "modeler_bench.h"
 
 namespace {
@@ -35,6 +36,22 @@ int run_modeler(const BenchArguments& arguments) {
     return 0;
 }
 
+int run_media(const std::filesystem::path& folder) {
+    opal::initialize_openvdb();
+    std::filesystem::create_directories(folder);
+    const std::vector<opal::MediaBenchRow> rows = opal::bench_media();
+    opal::AtomicFile file(folder / "media.csv");
+    std::ofstream csv(file.temporary_path());
+    csv << "medium,field,contrast,method,cells,fitted,ns_per_flight,variance,ns_times_variance\n";
+    for (const opal::MediaBenchRow& row : rows)
+        csv << fmt::format("{},{},{},{},{},{},{:.4g},{:.4g},{:.4g}\n", row.medium, row.field, row.contrast, row.method, row.cells,
+                           row.fitted ? 1 : 0, row.ns_per_flight, row.variance, row.ns_per_flight * row.variance);
+    csv.close();
+    if (!csv) throw opal::SystemError(fmt::format("{}: writing failed", (folder / "media.csv").string()));
+    file.commit();
+    return 0;
+}
+
 int run_bench(int argc, char** argv) {
     CLI::App app("Measures opal's programs: speed and memory as ratios within one run.", "opal-bench");
     app.require_subcommand(1);
@@ -42,6 +59,8 @@ int run_bench(int argc, char** argv) {
     CLI::App* const modeler = app.add_subcommand("modeler", "opal-model: labelling, builds, memory (some minutes)");
     modeler->add_option("-o,--output", arguments.folder, "folder for modeler.csv")->required()->type_name("DIR");
     modeler->add_flag("--quick", arguments.quick, "an eighth of the voxels (about a minute)");
+    CLI::App* const media = app.add_subcommand("media", "flights through fields: majorants and estimators (about a minute)");
+    media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
     color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     try {
@@ -55,6 +74,7 @@ int run_bench(int argc, char** argv) {
         opal::bench_color(arguments.folder);
         return 0;
     }
+    if (media->parsed()) return run_media(arguments.folder);
     return run_modeler(arguments);
 }
 

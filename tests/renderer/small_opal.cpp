@@ -63,7 +63,25 @@ OpalAsset SmallOpal::make() const {
                 ids.setValueOn({i, j, k}, nearest);
             }
     asset.grain_id->pruneGrid();
+
+    const openvdb::Vec3d corner(radius_mm + 2.0 * field_voxel_mm, radius_mm + 2.0 * field_voxel_mm,
+                                half_z + 2.0 * field_voxel_mm);
+    openvdb::FloatGrid::Ptr* grids[] = {&asset.sigma_a_scale, &asset.sigma_s_rayleigh_400nm, &asset.sigma_s_mie};
+    for (std::size_t f = 0; f < fields.size(); ++f)
+        if (fields[f]) *grids[f] = box_field({-corner, corner}, field_voxel_mm, fields[f]);
     return asset;
+}
+
+openvdb::FloatGrid::Ptr box_field(const openvdb::BBoxd& box_mm, double voxel_mm,
+                                  const std::function<double(const openvdb::Vec3d&)>& value) {
+    initialize_openvdb();
+    auto grid = openvdb::FloatGrid::create(0.0f);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_mm));
+    auto accessor = grid->getAccessor();
+    const openvdb::CoordBBox voxels(openvdb::Coord::ceil(box_mm.min() / voxel_mm),
+                                    openvdb::Coord::floor(box_mm.max() / voxel_mm));
+    for (auto voxel = voxels.begin(); voxel; ++voxel) accessor.setValueOn(*voxel, float(value(voxel_mm * (*voxel).asVec3d())));
+    return grid;
 }
 
 ScratchFolder::ScratchFolder() {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,10 +22,18 @@ struct SmallOpal {
     double voxel_mm = 0.1;
     int grains = 40;
     OpalConstants constants;
+    /// Over the place in mm, in voxels of `field_voxel_mm`; unset: the constant. Order: sigma_a_scale, sigma_s_rayleigh_400nm,
+    /// sigma_s_mie.
+    std::array<std::function<double(const openvdb::Vec3d&)>, 3> fields;
+    double field_voxel_mm = 0.25;
 
     SmallOpal();
     OpalAsset make() const;
 };
+
+/// A field with `value` at all voxels whose centres lie in a box (mm), background 0.
+openvdb::FloatGrid::Ptr box_field(const openvdb::BBoxd& box_mm, double voxel_mm,
+                                  const std::function<double(const openvdb::Vec3d&)>& value);
 
 /// A folder that is removed at the end.
 class ScratchFolder {

@@ -75,6 +75,20 @@ TEST(Furnace, DiffractionAndScattering) {
     expect_invisible(small, "[opal]\ncompanions = 0\n", 512);
 }
 
+TEST(Furnace, FieldsThatVary) {
+    SmallOpal small;
+    small.radius_mm = 1.5;
+    small.grains = 12;
+    small.constants.sphere_diameter_nm = 280.0;
+    small.fields[0] = [](const auto& p) { return 1.0 + p.x() / 4.0; };  // of no absorption at all
+    small.fields[1] = [](const auto& p) { return 0.5 + 0.5 * std::sin(6.0 * p.z()); };
+    small.fields[2] = [](const auto& p) { return p.y() > 0.3 ? 1.6 : 0.1; };
+    const std::string view = "position_mm = [0, -10, 2.5]\ntarget_mm = [0, 0, 0]\n";
+    expect_invisible(small, "[opal]\ncompanions = 0\n", 128, view, 0.008);
+    expect_invisible(small, "[opal]\ncompanions = 3\n", 64, view, 0.008);
+    expect_invisible(small, "[opal]\ncompanions = 7\nmajorants = \"global\"\n", 48, view, 0.008);
+}
+
 /// Everything at once: named materials that disperse, faults, mosaic spread, tabulated phase functions, and every number of
 /// lanes.
 TEST(Furnace, EveryFeature) {

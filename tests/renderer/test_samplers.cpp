@@ -4,7 +4,7 @@
 #include "chi_square.h"
 #include "formats/units.h"
 #include "renderer/core/camera.h"
-#include "renderer/core/medium.h"
+#include "renderer/core/medium_flight.h"
 #include "renderer/core/surface_scattering.h"
 #include "renderer/host/environment_map.h"
 
@@ -51,6 +51,7 @@ TEST(Samplers, LensDisc) {
 
 TEST(Samplers, FlightThroughAMedium) {
     for (const float sigma_s_per_mm : {1.0e-3f, 0.7f, 500.0f}) {
+        OpalView opal;
         LaneMedium<1> medium;
         medium.sigma_mie.v[0] = sigma_s_per_mm;
         // The largest float below 1 gives 16.7 mean free paths.
@@ -61,7 +62,9 @@ TEST(Samplers, FlightThroughAMedium) {
             [&](SamplerRandom&) {
                 PathRandom random(1, 0, path++);
                 LaneWeights<1> weights;
-                return SamplerPoint<1>{double(MediumFlight<1>(medium, random).advance(3.0e38f, weights))};
+                std::uint64_t violations = 0;
+                MediumFlight<1> flight(opal, medium, {}, weights, random, violations);
+                return SamplerPoint<1>{double(flight.advance(3.0e38f, weights))};
             },
             [&](SamplerPoint<1> t) { return double(sigma_s_per_mm) * std::exp(-double(sigma_s_per_mm) * t[0]); }));
     }
