@@ -10,7 +10,9 @@ namespace opal {
 
 double CrystalDefect::effective_index(double wavelength_nm) const {
     static const double filling = units::pi / (3.0 * std::sqrt(2.0));
-    return filling * n_sphere.at(wavelength_nm) + (1.0 - filling) * n_medium.at(wavelength_nm);
+    // In this form equal indices give exactly that index.
+    const double medium = n_medium.at(wavelength_nm);
+    return medium + filling * (n_sphere.at(wavelength_nm) - medium);
 }
 
 double CrystalDefect::relative_index(double wavelength_nm) const {
@@ -23,7 +25,9 @@ double CrystalDefect::size_parameter(double wavelength_nm) const {
 }
 
 double CrystalDefect::cross_section_nm2(double wavelength_nm) const {
-    const MieCoefficients coefficients = mie_coefficients(size_parameter(wavelength_nm), relative_index(wavelength_nm));
+    const double index = relative_index(wavelength_nm);
+    if (index == 1.0) return 0.0;
+    const MieCoefficients coefficients = mie_coefficients(size_parameter(wavelength_nm), index);
     return mie_efficiencies(coefficients).q_sca * units::pi * diameter_nm * diameter_nm / 4.0;
 }
 

@@ -17,13 +17,13 @@ struct CrystalDefect {
     MieParticle particle = MieParticle::vacancy;
     double diameter_nm = 250.0;
 
-    /// n = f n_sphere + (1 - f) n_medium with the filling f = pi / (3 sqrt 2) of touching spheres.
+    /// n_medium + f (n_sphere - n_medium) with the filling f = pi / (3 sqrt 2) of touching spheres.
     double effective_index(double wavelength_nm) const;
     /// Index of the ball over that of the crystal.
     double relative_index(double wavelength_nm) const;
     /// pi diameter n / (vacuum wavelength).
     double size_parameter(double wavelength_nm) const;
-    /// Scattering cross-section by the Lorenz-Mie series.
+    /// Scattering cross-section by the Lorenz-Mie series; 0 where the ball has the crystal's index.
     double cross_section_nm2(double wavelength_nm) const;
 };
 

@@ -122,7 +122,7 @@ struct BaseColorRecipe {
     double sigma_s_rayleigh_400nm_per_mm = 0.0;
     double sigma_s_mie_per_mm = 0.0;
     MiePhase mie_phase = MiePhase::henyey_greenstein;
-    double mie_asymmetry = 0.8;                       ///< g of the Henyey-Greenstein, Draine and Schlick phase functions
+    double mie_asymmetry = 0.8;                       ///< mean cosine of those in closed form, whatever their parameter
     double draine_alpha = 1.0;                        ///< Draine's second parameter
     MieParticle mie_particle = MieParticle::vacancy;  ///< what scatters: a missing sphere or a sphere too many
     double mie_particle_diameter_nm = 0.0;            ///< 0: as large as the crystal's spheres

@@ -47,6 +47,13 @@ double resin(double wavelength_nm) {
     return sellmeier({{1.1819, 0.011313}}, wavelength_nm);
 }
 
+void require_allowed(const SampledSpectrum& table, const std::string& whose) {
+    for (std::size_t i = 0; i < table.value.size(); ++i)
+        if (!(table.value[i] >= 1.0 && table.value[i] <= 4.0))
+            throw InputError(fmt::format("{}: index {} at {} nm is out of range; allowed: 1 to 4", whose, table.value[i],
+                                         table.wavelength_nm[i]));
+}
+
 }  // namespace
 
 const std::vector<std::string>& refractive_materials() {
@@ -69,10 +76,7 @@ RefractiveIndex RefractiveIndex::from_csv(const std::filesystem::path& path) {
     RefractiveIndex index(0.0);
     index.name_ = path.string();
     index.table_ = read_spectrum_csv(path);
-    for (std::size_t i = 0; i < index.table_.value.size(); ++i)
-        if (!(index.table_.value[i] >= 1.0 && index.table_.value[i] <= 4.0))
-            throw InputError(fmt::format("{}: index {} at {} nm is out of range; allowed: 1 to 4", path.string(),
-                                         index.table_.value[i], index.table_.wavelength_nm[i]));
+    require_allowed(index.table_, path.string());
     index.constant_ = index.at(sodium_d_nm);
     return index;
 }
@@ -82,6 +86,7 @@ RefractiveIndex RefractiveIndex::from_text(const std::string& text) {
         RefractiveIndex index(0.0);
         index.name_ = "table";
         index.table_ = spectrum_from_text(text);
+        require_allowed(index.table_, "table");
         index.constant_ = index.at(sodium_d_nm);
         return index;
     }

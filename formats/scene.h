@@ -62,7 +62,7 @@ struct EnvironmentDescription {
 struct OpalDescription {
     DiffractionModel diffraction = DiffractionModel::two_beam;
     double ewald_tolerance = 0.01;  ///< ewald-fresnel: largest deviation of |w + (lambda/n) G| from 1
-    double max_odds = 100.0;        ///< reflection odds of one grain saturate here; reflectance is low by at most 1 / max_odds
+    double max_odds = 400.0;        ///< reflection odds of one grain saturate here; reflectance is low by at most 1 / max_odds
     Dispersion dispersion =
         Dispersion::full;  ///< full: bands and refraction; bands: diffraction alone; none: indices at 589.3 nm
     MajorantKind majorants = MajorantKind::local;

@@ -87,7 +87,10 @@ def slab_in_air(program):
     curves = {"full-wave (FDTD), ambient air": y}
     for model, mean in (("two-beam", "linear"), ("two-beam", "maxwell-garnett"), ("transfer-matrix", "permittivity")):
         table = run(program, "reflectance", *crystal(1.45, 1.0, mean), "--layers", 12, "--model", model, "--wavelength-nm", wavelengths)
-        curves[f"{model}, {mean}" if model == "two-beam" else model] = table["reflectance_s"]
+        curves[f"{model}, {mean}" if model == "two-beam" else f"{model}, ambient of the mean index"] = table["reflectance_s"]
+    table = run(program, "reflectance", *crystal(1.45, 1.0), "--layers", 12, "--model", "transfer-matrix", "--ambient", "medium",
+                "--wavelength-nm", wavelengths)
+    curves["transfer-matrix, whole spheres in air"] = table["reflectance_s"]
     print("\n| 12 layers, 1.45 in air | peak at / d | height | full width at half height |")
     print("|---|---|---|---|")
     figure, axes = plt.subplots(figsize=(7, 4))
@@ -95,8 +98,8 @@ def slab_in_air(program):
         place, height, width = peak_of(x, curve)
         print(f"| {name} | {place:.4f} | {height:.4f} | {width:.4f} |")
         axes.plot(x, curve, "k." if name.startswith("full") else "-", markersize=3, label=name)
-    axes.set(xlabel="wavelength / sphere diameter", ylabel="reflectance", title="12 (111) layers of spheres 1.45 in air")
-    axes.legend(fontsize=8)
+    axes.set(xlabel="wavelength / sphere diameter", ylabel="reflectance", title="12 (111) layers of spheres 1.45 in air", ylim=(0, 0.9))
+    axes.legend(fontsize=7, ncol=2, loc="upper center")
     save(figure, "fdtd")
 
 
@@ -158,6 +161,7 @@ def models_side_by_side(program):
             ("Ewald-Fresnel, tolerance 1e-3", ["--model", "ewald-fresnel", "--tolerance", "1e-3"])):
         table = run(program, *common, *arguments)
         axes.plot(table["wavelength_nm"], table["reflectance"], label=label, linestyle="--" if "matrix" in label else "-")
+    axes.set(yscale="log", ylim=(1e-4, 1))
     axes.set(xlabel="wavelength (nm)", ylabel="reflectance", title="24 (111) layers, 250 nm spheres 1.45 in 1.333, normal incidence")
     axes.legend(fontsize=8)
     save(figure, "models")

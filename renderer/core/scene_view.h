@@ -43,7 +43,7 @@ struct OpalView {
     int num_pairs = 0;
     float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
     float mosaic_kappa = 0.0f;      ///< 0: no mosaic spread
-    float max_odds = 100.0f;        ///< where the odds of reflection over a grain's size saturate
+    float max_odds = 400.0f;        ///< where the odds of reflection over a grain's size saturate
     float ewald_tolerance = 0.01f;
     MediumView medium;
 };

@@ -24,8 +24,7 @@ void run_mie(const MieFlags& flags) {
     const double diameter_nm = single_value("--sphere-diameter-nm", flags.sphere.sphere_diameter_nm, 1.0, 1.0e5);
     const RefractiveIndex n_sphere = parse_index("--n-sphere", flags.sphere.n_sphere);
     const RefractiveIndex n_medium = parse_index("--n-medium", flags.sphere.n_medium);
-    const std::vector<double> wavelengths_nm =
-        parse_values("--wavelength-nm", flags.wavelength_nm, flag_wavelength_min_nm, flag_wavelength_max_nm);
+    const std::vector<double> wavelengths_nm = parse_wavelengths_nm(flags.wavelength_nm, n_sphere, n_medium);
     std::vector<double> angles_deg;
     if (!flags.phase.empty()) angles_deg = parse_values("--phase", flags.phase, 0.0, 180.0);
     if (!flags.output.empty()) require_writable(flags.output);

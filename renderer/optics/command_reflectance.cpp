@@ -20,7 +20,7 @@ namespace {
 struct ReflectanceFlags {
     CrystalFlags crystal;
     std::string layers, thickness_um, blocks = "1", angle_deg = "0", wavelength_nm = "400:700:1";
-    std::string angle_in = "outside", polarization = "both", model = "two-beam", tolerance, slices;
+    std::string angle_in = "outside", polarization = "both", model = "two-beam", tolerance, slices, ambient = "mean";
     std::filesystem::path output;
 };
 
@@ -39,6 +39,11 @@ void add_slab_flags(CLI::App& command, ReflectanceFlags& flags) {
         ->type_name("T");
     command.add_option("--slices", flags.slices, "transfer-matrix: films per distance of two planes of centres (default 1024)")
         ->type_name("N");
+    command
+        .add_option("--ambient", flags.ambient,
+                    "transfer-matrix: around the slab the mean index, or the medium and whole spheres")
+        ->check(CLI::IsMember({"mean", "medium"}))
+        ->capture_default_str();
 }
 
 ReflectanceSetup make_setup(const ReflectanceFlags& flags) {
@@ -54,6 +59,9 @@ ReflectanceSetup make_setup(const ReflectanceFlags& flags) {
         throw InputError("--tolerance: goes with --model ewald-fresnel only");
     if (!flags.slices.empty() && setup.model != ReflectanceModel::transfer_matrix)
         throw InputError("--slices: goes with --model transfer-matrix only");
+    if (flags.ambient == "medium") setup.ambient = Ambient::medium;
+    if (setup.ambient == Ambient::medium && setup.model != ReflectanceModel::transfer_matrix)
+        throw InputError("--ambient medium: goes with --model transfer-matrix only");
     if (!flags.tolerance.empty()) setup.ewald_tolerance = single_value("--tolerance", flags.tolerance, 1.0e-9, 0.5);
     if (!flags.slices.empty()) setup.slices_per_period = int(single_value("--slices", flags.slices, 1.0, 1.0e5));
     if (!flags.layers.empty() && !flags.thickness_um.empty())
@@ -66,6 +74,10 @@ ReflectanceSetup make_setup(const ReflectanceFlags& flags) {
     } else if (setup.model != ReflectanceModel::ewald_fresnel) {
         throw InputError(fmt::format("--model {}: needs a thickness, --layers or --thickness-um", flags.model));
     }
+    const double planes_of_centres = setup.layers / setup.planes.order();
+    if (setup.ambient == Ambient::medium && planes_of_centres != std::floor(planes_of_centres))
+        throw InputError(fmt::format("--ambient medium: whole spheres make whole planes; --layers must be a multiple of {}",
+                                     setup.planes.order()));
     return setup;
 }
 
@@ -78,7 +90,7 @@ void run_reflectance(const ReflectanceFlags& flags) {
     const ReflectanceSetup setup = make_setup(flags);
     const std::vector<double> angles_deg = parse_values("--angle-deg", flags.angle_deg, 0.0, flag_angle_max_deg);
     const std::vector<double> wavelengths_nm =
-        parse_values("--wavelength-nm", flags.wavelength_nm, flag_wavelength_min_nm, flag_wavelength_max_nm);
+        parse_wavelengths_nm(flags.wavelength_nm, setup.crystal.n_sphere, setup.crystal.n_medium);
     if (!flags.output.empty()) require_writable(flags.output);
     const std::string header = "wavelength_nm,reflectance_s,reflectance_p,reflectance";
     CsvTable table(angles_deg.size() > 1 ? "angle_deg," + header : header);
@@ -102,7 +114,8 @@ OpticsAction add_reflectance(CLI::App& app) {
     command.footer(
         "Columns wavelength_nm,reflectance_s,reflectance_p,reflectance; before them angle_deg where there are several angles.\n"
         "The slab lies in a medium of its own mean index: its faces reflect nothing. Angles outside are in air in front of a\n"
-        "surface parallel to the planes; refraction is by the effective index, for transfer-matrix the root of the mean n^2.");
+        "surface parallel to the planes; refraction is by the effective index, for transfer-matrix by that of the ambient, the\n"
+        "root of the mean n^2 or the medium's.");
     add_crystal_flags(command, flags->crystal);
     add_slab_flags(command, *flags);
     command.add_option("--angle-deg", flags->angle_deg, "angle to the planes' normal, degrees")

@@ -72,6 +72,12 @@ CrystalOptics parse_crystal(const CrystalFlags& flags, double sphere_diameter_nm
     return crystal;
 }
 
+std::vector<double> parse_wavelengths_nm(const std::string& text, const RefractiveIndex& n_sphere,
+                                         const RefractiveIndex& n_medium) {
+    const bool varies = n_sphere.varies() || n_medium.varies();
+    return parse_values("--wavelength-nm", text, varies ? index_from_nm : 1.0, varies ? index_to_nm : 1.0e5);
+}
+
 std::vector<double> parse_diameters_nm(const CrystalFlags& flags) {
     return parse_values("--sphere-diameter-nm", flags.sphere_diameter_nm, diameter_min_nm, diameter_max_nm);
 }

@@ -29,6 +29,11 @@ CrystalOptics parse_crystal(const CrystalFlags& flags, double sphere_diameter_nm
 std::vector<double> parse_diameters_nm(const CrystalFlags& flags);
 PlaneFamily parse_planes(const CrystalFlags& flags);
 
+/// The vacuum wavelengths of --wavelength-nm: 1 to 100,000 nm, and where one of the indices varies those that dispersion formulas
+/// serve, index_from_nm to index_to_nm.
+std::vector<double> parse_wavelengths_nm(const std::string& text, const RefractiveIndex& n_sphere,
+                                         const RefractiveIndex& n_medium);
+
 /// The one value of a flag that takes no range.
 double single_value(const std::string& flag, const std::string& text, double low, double high);
 

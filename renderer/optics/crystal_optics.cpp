@@ -14,9 +14,6 @@
 namespace opal {
 namespace {
 
-/// The built-in dispersion formulas have their resonances outside of these.
-constexpr double index_from_nm = 200.0, index_to_nm = 2500.0;
-
 double squared(double x) {
     return x * x;
 }

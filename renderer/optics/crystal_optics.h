@@ -6,6 +6,9 @@
 
 namespace opal {
 
+/// Wavelengths at which refractive indices that vary are asked for: the built-in formulas have their resonances outside.
+inline constexpr double index_from_nm = 200.0, index_to_nm = 2500.0;
+
 /// How the effective index follows from the two indices and the filling f.
 enum class IndexMean {
     linear,           ///< f n_sphere + (1 - f) n_medium
@@ -46,7 +49,7 @@ double permittivity_coefficient(const CrystalOptics& crystal, const PlaneFamily&
 
 /// Bragg wavelength (vacuum nm) of planes met at `angle_outside_rad` in air: lambda = 2 sqrt(n_eff^2 - sin^2) / |G|, the law of
 /// Bragg with the refraction of a surface parallel to the planes, solved together with n_eff(lambda). Indices that vary are taken
-/// between 200 and 2500 nm. Throws InputError where the two do not settle, which takes an index that varies wildly.
+/// between index_from_nm and index_to_nm. Throws InputError where the two do not settle, which takes an index that varies wildly.
 double bragg_wavelength_outside_nm(const CrystalOptics& crystal, const PlaneFamily& planes, double angle_outside_rad);
 
 /// Relative width of the stop band, s polarization: |eps_G| / (mean permittivity c^2), c the cosine to the planes' normal inside

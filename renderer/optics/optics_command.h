@@ -18,8 +18,6 @@ OpticsAction add_bragg(CLI::App& app);
 OpticsAction add_mie(CLI::App& app);
 OpticsAction add_color(CLI::App& app);
 
-/// Wavelengths that the built-in dispersion formulas serve.
-inline constexpr double flag_wavelength_min_nm = 200.0, flag_wavelength_max_nm = 2500.0;
 /// Short of grazing, where nothing enters.
 inline constexpr double flag_angle_max_deg = 89.99;
 

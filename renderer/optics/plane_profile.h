@@ -13,6 +13,11 @@ namespace opal {
 /// per sphere, D the distance of neighbouring planes of centres).
 double plane_filling(const CrystalOptics& crystal, const PlaneFamily& planes, double low_nm, double high_nm);
 
+/// The permittivity of `count` planes of whole spheres in the medium, from the front of the first spheres to the back of the
+/// last, as films of 1 / `slices` of the distance of two planes.
+std::vector<Film> plane_averaged_slab(const CrystalOptics& crystal, const PlaneFamily& planes, double wavelength_nm, long count,
+                                      int slices);
+
 /// One period of the plane-averaged permittivity along the normal of (hkl), cut midway between two planes of centres, as `slices`
 /// equal films, each with the mean over its thickness.
 std::vector<Film> plane_averaged_period(const CrystalOptics& crystal, const PlaneFamily& planes, double wavelength_nm,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/optics/reflectance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -48,24 +49,39 @@ PolarizedReflectance<double> ewald_fresnel(const ReflectanceSetup& setup, double
                                      setup.ewald_tolerance);
 }
 
+CharacteristicMatrix matrix_of(const std::vector<Film>& films, Polarization polarization, double wavelength_nm,
+                               double tangential) {
+    CharacteristicMatrix product;
+    for (const Film& film : films) product = product * characteristic_matrix(film, polarization, wavelength_nm, tangential);
+    return product;
+}
+
+/// The first `part` of a period, in [0, 1).
+std::vector<Film> front_of(const std::vector<Film>& period, double part) {
+    const double films = part * double(period.size());
+    std::vector<Film> front(period.begin(), period.begin() + std::ptrdiff_t(films));
+    front.push_back(period[front.size()]);
+    front.back().thickness_nm *= films - std::floor(films);
+    return front;
+}
+
 PolarizedReflectance<double> transfer_matrix(const ReflectanceSetup& setup, double wavelength_nm, double cosine) {
-    const std::vector<Film> period = plane_averaged_period(setup.crystal, setup.planes, wavelength_nm, setup.slices_per_period);
     const double ambient = direction_index(setup, wavelength_nm);
     const double tangential = ambient * std::sqrt(1.0 - cosine * cosine);
     const double periods = setup.layers / setup.planes.order();
+    // A whole number of periods stays one in spite of rounding.
     const long whole = std::lround(std::floor(periods * (1.0 + 1.0e-12)));
+    std::vector<Film> repeated, rest;
+    if (setup.ambient == Ambient::medium) {
+        rest = plane_averaged_slab(setup.crystal, setup.planes, wavelength_nm, whole, setup.slices_per_period);
+    } else {
+        repeated = plane_averaged_period(setup.crystal, setup.planes, wavelength_nm, setup.slices_per_period);
+        rest = front_of(repeated, std::max(0.0, periods - double(whole)));
+    }
     const auto response = [&](Polarization polarization) {
-        CharacteristicMatrix one, rest;
-        double left_nm = (periods - double(whole)) * period.front().thickness_nm * setup.slices_per_period;
-        for (const Film& film : period) {
-            one = one * characteristic_matrix(film, polarization, wavelength_nm, tangential);
-            if (left_nm > 0.0) {
-                const Film part{std::min(left_nm, film.thickness_nm), film.permittivity};
-                rest = rest * characteristic_matrix(part, polarization, wavelength_nm, tangential);
-                left_nm -= film.thickness_nm;
-            }
-        }
-        return stack_response(power(one, whole) * rest, polarization, ambient, ambient, cosine).reflectance;
+        const CharacteristicMatrix stack = power(matrix_of(repeated, polarization, wavelength_nm, tangential), whole) *
+                                           matrix_of(rest, polarization, wavelength_nm, tangential);
+        return stack_response(stack, polarization, ambient, ambient, cosine).reflectance;
     };
     return {response(Polarization::s), response(Polarization::p)};
 }
@@ -87,8 +103,9 @@ PolarizedReflectance<double> slab_reflectance(const ReflectanceSetup& setup, dou
 }  // namespace
 
 double direction_index(const ReflectanceSetup& setup, double wavelength_nm) {
-    return setup.model == ReflectanceModel::transfer_matrix ? std::sqrt(setup.crystal.mean_permittivity(wavelength_nm))
-                                                            : setup.crystal.effective_index(wavelength_nm);
+    if (setup.model != ReflectanceModel::transfer_matrix) return setup.crystal.effective_index(wavelength_nm);
+    if (setup.ambient == Ambient::medium) return setup.crystal.n_medium.at(wavelength_nm);
+    return std::sqrt(setup.crystal.mean_permittivity(wavelength_nm));
 }
 
 PolarizedReflectance<double> reflectance_at(const ReflectanceSetup& setup, double wavelength_nm, double cosine) {

@@ -8,20 +8,26 @@ namespace opal {
 
 enum class ReflectanceModel { two_beam, ewald_fresnel, laue, transfer_matrix };
 
-/// A slab of a perfect crystal, or a pile of such slabs, with planes (hkl) parallel to its faces, inside a medium of the
-/// crystal's own mean index: nothing is reflected by the faces as such.
+/// What a slab lies in.
+enum class Ambient {
+    mean_index,  ///< a medium of its own mean index: nothing is reflected by its faces as such
+    medium,      ///< transfer-matrix: what is between the spheres, which are whole at both faces
+};
+
+/// A slab of a perfect crystal, or a pile of such slabs, with planes (hkl) parallel to its faces.
 struct ReflectanceSetup {
     CrystalOptics crystal;
     PlaneFamily planes;
     double layers = 24.0;           ///< thickness of a slab times |G|
     double blocks = 1.0;            ///< slabs in an incoherent pile
     double ewald_tolerance = 0.01;  ///< ewald-fresnel
-    int slices_per_period = 1024;    ///< transfer-matrix: films per distance of two planes of centres
+    int slices_per_period = 1024;   ///< transfer-matrix: films per distance of two planes of centres
     ReflectanceModel model = ReflectanceModel::two_beam;
+    Ambient ambient = Ambient::mean_index;
 };
 
-/// Index of the medium that the directions inside refer to: the crystal's effective index, or for the transfer matrix, which
-/// knows no effective index, the root of the mean permittivity.
+/// Index of the medium that the directions inside refer to: the crystal's effective index; for the transfer matrix, which knows
+/// no effective index, that of its ambient, the root of the mean permittivity or the medium's.
 double direction_index(const ReflectanceSetup& setup, double wavelength_nm);
 
 /// Reflectance at a vacuum wavelength for light that travels at `cosine` to the planes' normal inside the crystal.

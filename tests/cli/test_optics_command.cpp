@@ -146,6 +146,8 @@ TEST(OpticsCommand, WhatIsWrongIsNamed) {
     refused("reflectance --layers 10 --model exact", "--model");
     refused("reflectance --layers 10 --tolerance 0.1", "goes with --model ewald-fresnel only");
     refused("reflectance --layers 10 --slices 64", "goes with --model transfer-matrix only");
+    refused("reflectance --layers 10 --ambient medium", "goes with --model transfer-matrix only");
+    refused("reflectance --layers 3 --hkl 2,2,2 --model transfer-matrix --ambient medium", "multiple of 2");
     refused("reflectance --layers 10 --filling 0.8", "--filling 0.8");
     refused("reflectance --layers 10 --blocks 0", "--blocks 0");
     refused("reflectance --layers 10 --n-sphere silika", "did you mean 'silica'");
@@ -154,7 +156,8 @@ TEST(OpticsCommand, WhatIsWrongIsNamed) {
     refused("bragg --sphere-diameter-nm 5", "allowed: 10 to 10000");
     refused("bragg --chart chart.png", "needs ranges in both");
     refused("bragg --sphere-diameter-nm 200,300 --chart chart.jpg", "must end in .png");
-    refused("mie --wavelength-nm 100", "allowed: 200 to 2500");
+    refused("mie --n-sphere silica --wavelength-nm 100", "allowed: 200 to 2500");
+    refused("reflectance --layers 3 --wavelength-nm 0", "--wavelength-nm 0: 0 is out of range");
     refused("mie --phase 190", "--phase 190");
     refused("color " + output, "out.csv: no such file");
     refused("color " + output + " --illuminant F2", "--illuminant F2: not known");

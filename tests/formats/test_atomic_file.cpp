@@ -50,6 +50,7 @@ TEST_F(AtomicFileTest, RefusesWhatCannotBeWritten) {
     EXPECT_INPUT_ERROR(require_writable(folder_ / "missing" / "a.txt"), "does not exist");
     EXPECT_INPUT_ERROR(require_writable(folder_), "is a folder");
     EXPECT_INPUT_ERROR(require_writable(""), "not a file name");
+    EXPECT_INPUT_ERROR(require_writable("/dev/null"), "is a device");
     EXPECT_INPUT_ERROR(require_writable("/proc/a.txt"), "cannot be written");
 }
 

@@ -97,9 +97,9 @@ TEST(SceneNeeds, FieldsAreJudgedWhereTheAbsorberIsStrongest) {
 TEST(SceneNeeds, FieldsOfDefectsAreJudgedWhereTheyScatterMost) {
     const auto recipe_of = [](double concentration) {
         return recipe_with("[base_color]\ndefect_concentration = " + std::to_string(concentration) +
-                           "\nmie_particle_diameter_nm = 20\nsigma_s_mie_field = { kind = \"noise\", contrast = 0.5 }\n");
+                           "\nmie_particle_diameter_nm = 60\nsigma_s_mie_field = { kind = \"noise\", contrast = 0.5 }\n");
     };
-    // Small particles: 5.4 times as strong at 360 nm as at 550 nm.
+    // Small particles: some 5 times as strong at 360 nm as at 550 nm.
     const Recipe dense = recipe_of(0.1);
     const double per_mm = defect_scattering(dense.crystal, dense.base_color).sigma_s_550nm_per_mm;
     Recipe kept = recipe_of(0.1 * 1.0e-4 / per_mm), dropped = recipe_of(0.1 * 1.0e-5 / per_mm);

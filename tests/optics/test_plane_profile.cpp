@@ -42,6 +42,21 @@ TEST(PlaneProfile, ItsFourierCoefficientIsTheFormFactors) {
         }
 }
 
+/// A slab of whole spheres holds as much of them as it has planes, wherever the films lie.
+TEST(PlaneProfile, WholeSpheresAreAllThere) {
+    const CrystalOptics crystal;
+    for (const PlaneFamily& planes : families) {
+        const double plane_nm = planes.order() / planes.g_per_nm(crystal);
+        double excess_nm = 0.0, depth_nm = 0.0;
+        for (const Film& film : plane_averaged_slab(crystal, planes, 500.0, 5, 37)) {
+            excess_nm += film.thickness_nm * (film.permittivity - 1.333 * 1.333);
+            depth_nm += film.thickness_nm;
+        }
+        EXPECT_NEAR(depth_nm, 4.0 * plane_nm + crystal.sphere_diameter_nm, 1e-9);
+        EXPECT_NEAR(excess_nm, 5.0 * plane_nm * (crystal.mean_permittivity(500.0) - 1.333 * 1.333), 1e-9);
+    }
+}
+
 TEST(PlaneProfile, TouchingSpheresInTheirDensestPlanes) {
     const CrystalOptics crystal;
     const double d = crystal.sphere_diameter_nm;

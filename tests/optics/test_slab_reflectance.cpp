@@ -52,6 +52,35 @@ TEST(SlabReflectance, TwelveLayersAgreeWithTheFullWaveSimulation) {
     EXPECT_NEAR(peak.relative_width, expected.relative_width, 0.08 * expected.relative_width);
 }
 
+/// The plane-averaged profile of whole spheres in air, without any fitted index: the same peak, but as much redder as the root of
+/// the mean permittivity is above the band solver's index (mpb_fcc_L_gap.csv, 1.45 in air: 2.16924 d / (2 sqrt(2/3) d)), and the
+/// side lobe that the faces of the slab make on its red side, which no model in an ambient of the mean index has.
+TEST(SlabReflectance, WholeSpheresInAirMakeTheSideLobeOfTheFullWaveSimulation) {
+    auto rows = read_reference_table("fdtd_slab_111_ns1.45_nm1.0_12layers.csv");
+    std::sort(rows.begin(), rows.end());
+    ReflectanceSetup setup;
+    setup.crystal.n_medium = 1.0;
+    setup.layers = 12.0;
+    setup.model = ReflectanceModel::transfer_matrix;
+    setup.ambient = Ambient::medium;
+    const double redder = std::sqrt(setup.crystal.mean_permittivity(500.0)) / (2.16924 / (2.0 * std::sqrt(2.0 / 3.0)));
+    std::vector<double> wavelength, reflectance, whole_spheres;
+    double lobe_height = 0.0, lobe_wavelength = 0.0, height = 0.0, place = 0.0;
+    for (const auto& row : rows) {
+        wavelength.push_back(row[0]);
+        reflectance.push_back(row[1]);
+        whole_spheres.push_back(reflectance_at(setup, row[0] * redder * setup.crystal.sphere_diameter_nm, 1.0).s);
+        if (row[0] > 2.4 && row[1] > lobe_height) lobe_height = row[1], lobe_wavelength = row[0];
+        if (row[0] > 2.4 && whole_spheres.back() > height) height = whole_spheres.back(), place = row[0];
+    }
+    const Peak expected = measure_peak(wavelength, reflectance), peak = measure_peak(wavelength, whole_spheres);
+    EXPECT_NEAR(peak.height, expected.height, 0.05 * expected.height);
+    EXPECT_NEAR(peak.relative_width, expected.relative_width, 0.08 * expected.relative_width);
+    EXPECT_NEAR(peak.wavelength, expected.wavelength, 0.005 * expected.wavelength);
+    EXPECT_NEAR(height, lobe_height, 0.15 * lobe_height);
+    EXPECT_NEAR(place, lobe_wavelength, 0.01 * lobe_wavelength);
+}
+
 struct RmsDifference {
     double s, p;
 };

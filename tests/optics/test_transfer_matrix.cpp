@@ -121,5 +121,23 @@ TEST(TransferMatrix, SlicingConvergesQuadratically) {
     }
 }
 
+/// (222) counts the same slab in half the distances of (111); a slab of a little less than a whole number of periods is
+/// continuous with the whole one.
+TEST(TransferMatrix, ThicknessIsCountedInTheFamilysOwnPlanes) {
+    ReflectanceSetup setup, twice, part;
+    setup.model = twice.model = part.model = ReflectanceModel::transfer_matrix;
+    setup.layers = 24.0;
+    twice.planes = {2, 2, 2};
+    twice.layers = 48.0;
+    part.layers = 23.999999;
+    for (const double wavelength_nm : {300.0, 560.0, 580.0, 600.0}) {
+        const double reflectance = reflectance_at(setup, wavelength_nm, 0.95).p;
+        EXPECT_NEAR(reflectance_at(twice, wavelength_nm, 0.95).p, reflectance, 1e-9);
+        EXPECT_NEAR(reflectance_at(part, wavelength_nm, 0.95).p, reflectance, 1e-5);
+    }
+    part.layers = 23.5;
+    EXPECT_GT(std::abs(reflectance_at(part, 580.0, 1.0).s - reflectance_at(setup, 580.0, 1.0).s), 1e-3);
+}
+
 }  // namespace
 }  // namespace opal

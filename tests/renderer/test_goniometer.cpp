@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 
 #include "formats/units.h"
 #include "goniometer.h"
@@ -81,6 +82,57 @@ TEST(Goniometer, PlatesThatDisperseDoSoToo) {
     small.constants.n_sphere = RefractiveIndex::of_material("silica");
     small.constants.n_medium = RefractiveIndex::of_material("water");
     expect_bragg_snell(small.constants);
+}
+
+/// Reflectance of a pile of blocks, M r / (1 + (M - 1) r), averaged over the blocks' triangular spread of thickness: normal
+/// incidence, planes along the faces, `detuning` = lambda / lambda_B - 1.
+double pile_reflectance(const CrystalParameters& crystal, double coherence_nm, double thickness_nm, double wavelength_nm) {
+    const double g_per_nm = std::sqrt(1.5) / crystal.sphere_diameter_nm, n = effective_index(crystal);
+    const double kappa_per_nm = units::pi * std::abs(permittivity_coefficient(crystal, g_per_nm)) / (n * wavelength_nm);
+    const double delta_per_nm = 2.0 * units::pi * (n / wavelength_nm - 0.5 * g_per_nm);
+    const std::complex<double> gamma = std::sqrt(std::complex<double>(kappa_per_nm * kappa_per_nm - delta_per_nm * delta_per_nm));
+    double mean = 0.0;
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {
+        const double x = (i + 0.5) / steps;
+        const double t_nm = coherence_nm * (0.5 + x);
+        const double odds =
+            kappa_per_nm * kappa_per_nm * (std::sinh(gamma * t_nm) * std::sinh(gamma * t_nm) / (gamma * gamma)).real();
+        const double blocks = thickness_nm / t_nm;
+        mean += (x < 0.5 ? 4.0 * x : 4.0 - 4.0 * x) / steps * (blocks * odds / (1.0 + blocks * odds));
+    }
+    return mean;
+}
+
+/// The whole walk through a plate of one grain, against the pile's formula between the plate's faces (intensities added):
+/// reflected by a face F, by the pile R, by the far face.
+TEST(Goniometer, PlatesReflectAsPilesOfBlocksDo) {
+    for (const double blocks : {1.0, 12.0, 200.0}) {
+        SmallOpal small;
+        small.constants.n_medium = 1.42;
+        small.constants.coherence_length_um = 1000.0 / blocks;
+        const ScratchFolder folder;
+        write_opal_asset(oriented_plate(small.constants), folder / "plate.vdb");
+        write_cap(folder / "above.exr", {0.0f, 0.0f, 1.0f}, 90.0);
+        const Goniometer goniometer("[environment]\nfile = '" + (folder / "above.exr").string() +
+                                        "'\n[opal]\nmax_odds = 1e6\n[[object]]\nkind = \"opal\"\nfile = '" +
+                                        (folder / "plate.vdb").string() + "'\n",
+                                    2.0);
+        const CrystalParameters crystal{250.0, 1.45, 1.42};
+        const double n = effective_index(crystal), face = std::pow((n - 1.0) / (n + 1.0), 2);
+        const double bragg_nm = 2.0 * n * std::sqrt(2.0 / 3.0) * 250.0;
+        for (const double detuning : {-0.004, -0.0015, 0.0, 0.001, 0.0025}) {
+            // One block as thick as the plate reflects everything inside the band: no walk there to test.
+            if (blocks == 1.0 && std::abs(detuning) < 0.0022) continue;
+            const double wavelength_nm = bragg_nm * (1.0 + detuning);
+            const double pile = pile_reflectance(crystal, 1.0e6 / blocks, 1.0e6, wavelength_nm), passed = 1.0 - pile;
+            const double below = pile + passed * passed * face / (1.0 - pile * face);
+            const double expected = face + (1.0 - face) * (1.0 - face) * below / (1.0 - face * below);
+            const auto reading = goniometer.radiance({0.0f, 0.0f, -1.0f}, 0.05, wavelength_nm, 8000, 1);
+            EXPECT_NEAR(reading.mean, expected, 4.0 * reading.standard_error) << blocks << " blocks, detuned by " << detuning;
+            EXPECT_LT(reading.standard_error, 0.006);
+        }
+    }
 }
 
 /// Emitter and detector change places: the flux must not. The sample is a ball of grains in random orientations; directions 70
