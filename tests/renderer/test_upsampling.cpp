@@ -33,8 +33,8 @@ TEST(Upsampling, JakobHanikaRoundTrip) {
 }
 
 TEST(Upsampling, BasisRoundTripIsExact) {
-    // dE of 2e-5 of full scale in the darkest: Lab's slope there is 903 per unit of Y.
-    EXPECT_LT(statistics_of(round_trip_errors(tables_for(Upsampling::basis), srgb_cube(9))).max, 0.05);
+    // Single precision, 6e-8 of full scale, at Lab's steepest, 903 per unit of Y and more for a* and b*.
+    EXPECT_LT(statistics_of(round_trip_errors(tables_for(Upsampling::basis), srgb_cube(9))).max, 2e-4);
 }
 
 /// Smits' spectra are for an equal-energy white and ten bins: the published method misses by 2 dE in the mean and up to 5 under
