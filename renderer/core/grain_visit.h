@@ -33,17 +33,20 @@ struct GrainVisit {
     GrainRates<N> rates[2];          ///< along the present direction and along the one before
     int current = 0;                 ///< which of the two is the present one
     bool present_known = false;
-    int link = -1;  ///< family that turns one into the other; -1: the other is not known
+    int link = -1;          ///< family that turns one into the other; -1: the other is not known
+    float clear_mm = 0.0f;  ///< no surface lies nearer to where the present flight starts
 
     OPAL_HD const GrainRates<N>& present() const { return rates[current]; }
     /// The next flight starts a new stay: after scattering, or at the surface.
     OPAL_HD void renew() {
         fresh = true;
+        clear_mm = 0.0f;
         at_boundary = false;
     }
     OPAL_HD void enter(int next_grain) {
         grain = next_grain;
         fresh = true;
+        if (next_grain == 0) clear_mm = 0.0f;
         at_boundary = true;
     }
 };

@@ -84,21 +84,33 @@ OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& 
     return true;
 }
 
-/// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface `surface_mm` ahead.
-template <int N>
+/// No surface lies nearer to a place inside the opal (world mm): its depth by the level set, less a voxel for what the triangles
+/// may deviate from it.
+OPAL_HD inline float clearance_mm(const OpalView& opal, Vec3 position) {
+    if (!opal.shape.grid) return 0.0f;
+    const float depth_mm = -field_value(opal.shape, opal.world_from_object.local_from_world_point(position));
+    return max_of(0.0f, depth_mm - 1.0f / opal.shape.voxels_per_mm) * opal.world_from_object.scale;
+}
+
+/// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface. `surface.distance_mm()` finds
+/// that with a ray cast; it is asked only where the ray might get so far: inside a band the next turn is often some micrometres
+/// away.
+template <int N, class SurfaceProbe>
 OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWavelengths<N>& wavelengths,
-                                            const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray ray, float surface_mm,
-                                            GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random,
-                                            PathCounters& counters) {
+                                            const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray ray,
+                                            SurfaceProbe& surface, GrainVisit<N>& visit, LaneWeights<N>& weights,
+                                            PathRandom& random, PathCounters& counters) {
     MediumFlight<N> flight(opal, medium, ray, weights, random, counters.majorant_violations);
-    InteriorEvent event{InteriorEventKind::surface, surface_mm, ray.direction, false};
+    InteriorEvent event{InteriorEventKind::surface, 0.0f, ray.direction, false};
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
         const float scale = opal.world_from_object.scale;
         const Vec3 direction = opal.world_from_object.local_from_world_direction(ray.direction);
         GrainWalk walk(opal.grains, opal.world_from_object.local_from_world_point(ray.origin), direction);
         float reached = 0.0f;  // object mm, like everything on the walk
         float entered_mm = 0.0f;
-        if (visit.grain == 0) visit.enter(walk.next_grain(0, reached, surface_mm / scale));
+        if (visit.grain == 0) visit.enter(walk.next_grain(0, reached, surface.distance_mm() / scale));
+        float clear_mm = visit.clear_mm;  // no surface within this distance of the origin
+        bool clear_known = false;
         while (visit.grain != 0) {
             prepare_visit(opal, optics, ray.direction, direction, visit, random, counters);
             Vec3 turned;
@@ -110,6 +122,11 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             const GrainRates<N>& rates = visit.present();
             const float total_per_mm = rates.total_per_mm[0];
             const float turn_mm = total_per_mm > 0.0f ? entered_mm - logf(1.0f - random.next()) / total_per_mm : 3.0e38f;
+            if (turn_mm > clear_mm && !clear_known) {
+                clear_mm = clearance_mm(opal, ray.origin);
+                clear_known = true;
+            }
+            const float surface_mm = turn_mm > clear_mm ? surface.distance_mm() : 3.0e38f;
             const int next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
             const float leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);
             const float end_mm = min_of(min_of(turn_mm, leaves_mm), surface_mm);
@@ -124,6 +141,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                 const bool turned_back = k == visit.link;
                 ++counters.diffractions;
                 if (turned_back) ++counters.turns_back;
+                visit.clear_mm = max_of(0.0f, clear_mm - turn_mm);
                 return {InteriorEventKind::diffraction, turn_mm, turn_visit(opal, visit, k), turned_back};
             }
             if (next == 0 || end_mm >= surface_mm) break;
@@ -131,7 +149,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             entered_mm = end_mm;
         }
     }
-    event.distance_mm = flight.advance(surface_mm, weights);
+    event.distance_mm = flight.advance(surface.distance_mm(), weights);
     if (flight.scattered()) {
         ++counters.scatterings;
         event.kind = InteriorEventKind::scattering;

@@ -16,6 +16,30 @@ struct PathResult {
     Lanes<N> truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
 };
 
+/// The surface ahead of a ray, looked for when it is first asked for.
+template <class Intersector>
+class SurfaceProbe {
+  public:
+    OPAL_HD SurfaceProbe(const Intersector& intersector, const Ray& ray) : intersector_(intersector), ray_(ray) {}
+
+    OPAL_HD bool found() {
+        if (!asked_) found_ = intersector_.closest(ray_, hit_);
+        asked_ = true;
+        return found_;
+    }
+    /// 0 where there is none.
+    OPAL_HD float distance_mm() { return found() ? hit_.distance_mm : 0.0f; }
+    /// Once found.
+    OPAL_HD const RayHit& hit() const { return hit_; }
+
+  private:
+    const Intersector& intersector_;
+    const Ray& ray_;
+    RayHit hit_;
+    bool asked_ = false;
+    bool found_ = false;
+};
+
 /// The illuminant at a path's wavelengths, looked up once.
 template <int N>
 struct LaneSpectra {
@@ -61,22 +85,17 @@ class PathTracer {
   private:
     OPAL_HD void follow(Ray ray, int bounce) {
         while (true) {
-            RayHit hit;
-            const bool found = intersector_.closest(ray, hit);
-            if (bounce == 0 && found && meets_opal_from_within(ray, hit)) inside_ = true;
-            if (bounce >= scene_.max_bounces && (found || inside_)) {
+            SurfaceProbe<Intersector> ahead(intersector_, ray);
+            if (bounce == 0 && ahead.found() && meets_opal_from_within(ray, ahead.hit())) inside_ = true;
+            if (bounce >= scene_.max_bounces && (inside_ || ahead.found())) {
                 const Lanes<N> lost = weights_.contribution();
                 for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
                 ++counters_.truncated_paths;
                 return;
             }
             if (inside_) {
-                if (!found) {
-                    ++counters_.lost_paths;
-                    return;
-                }
-                const InteriorEvent event = cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, hit.distance_mm,
-                                                           visit_, weights_, random_, counters_);
+                const InteriorEvent event =
+                    cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, ahead, visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
                     specular_ = true;
@@ -85,12 +104,16 @@ class PathTracer {
                     if (!survives_roulette(bounce)) return;
                     continue;
                 }
+                if (!ahead.found()) {
+                    ++counters_.lost_paths;
+                    return;
+                }
             }
-            if (!found) {
+            if (!ahead.found()) {
                 add_environment(ray.direction);
                 return;
             }
-            const Surface surface = surface_at(scene_, hit);
+            const Surface surface = surface_at(scene_, ahead.hit());
             ray = surface.material < 0 ? meet_opal(ray, surface, bounce) : meet_diffuse(ray, surface);
             if (!survives_roulette(++bounce)) return;
         }

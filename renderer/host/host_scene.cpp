@@ -149,6 +149,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
 
     grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
     opal.grains = grains_->field();
+    shape_ = std::make_unique<FieldGridData>(*asset.shape);
+    opal.shape = shape_->view();
     for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
     opal.orientations = orientations_.data();
 

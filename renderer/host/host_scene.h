@@ -8,6 +8,7 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
+#include "renderer/host/field_grid.h"
 #include "renderer/host/grain_grid.h"
 #include "renderer/host/medium_fields.h"
 #include "renderer/host/mesh_data.h"
@@ -54,6 +55,7 @@ class HostScene {
     std::vector<float> grain_size_mm_;
     OpticalTables optics_;
     std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
+    std::unique_ptr<FieldGridData> shape_;
     std::unique_ptr<MediumFields> medium_fields_;
     PhaseFunction mie_phase_;
     int reciprocal_points_ = 0;
