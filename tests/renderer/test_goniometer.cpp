@@ -65,8 +65,10 @@ void expect_bragg_snell(const OpalConstants& constants) {
     for (double angle_deg = 0.0; angle_deg <= 60.0; angle_deg += 10.0) {
         const double angle_rad = units::rad_from_deg(angle_deg);
         const double expected_nm = bragg_snell_nm(constants, angle_rad);
-        EXPECT_NEAR(measured_peak_nm(goniometer, angle_rad, expected_nm), expected_nm, 0.003 * expected_nm)
-            << angle_deg << " deg";
+        const double measured_nm = measured_peak_nm(goniometer, angle_rad, expected_nm);
+        ::testing::Test::RecordProperty("at_" + std::to_string(int(angle_deg)) + "_deg",
+                                        std::to_string(measured_nm) + " " + std::to_string(expected_nm));
+        EXPECT_NEAR(measured_nm, expected_nm, 0.003 * expected_nm) << angle_deg << " deg";
     }
 }
 
@@ -151,6 +153,9 @@ void expect_reciprocal(const SmallOpal& small, const std::string& settings, doub
     };
     const auto forth = flux("a.exr", "b.exr", 1), back = flux("b.exr", "a.exr", 2);
     const double error = std::hypot(forth.standard_error, back.standard_error);
+    const std::string at = "at_" + std::to_string(int(wavelength_nm)) + "_nm_";
+    ::testing::Test::RecordProperty(at + "forth_back_error",
+                                    std::to_string(forth.mean) + " " + std::to_string(back.mean) + " " + std::to_string(error));
     EXPECT_NEAR(forth.mean, back.mean, 3.0 * error) << wavelength_nm << " nm";
     EXPECT_LT(error, 0.015 * forth.mean) << "too noisy to say anything";
 }
