@@ -29,9 +29,9 @@ TEST(Companions, ChangeNothingButTheNoise) {
             .outcome.totals;
     };
     // Each render has random numbers of its own: with the same ones the heroes are the same, and so are their errors.
-    const SpectrumTotals alone = render(0, 1024);
+    const SpectrumTotals alone = render(0, 640);
     for (const int companions : {1, 3, 7}) {
-        const SpectrumTotals together = render(companions, 512);
+        const SpectrumTotals together = render(companions, 288);
         double statistic = 0.0;
         int used = 0;
         for (std::size_t bin = 2; bin + 6 < num_bins; ++bin, ++used) {
