@@ -94,6 +94,9 @@ void read_scatterers(const MetadataReader& reader, const std::string& file, Opal
     constants.draine_alpha = reader.number(metadata_keys::draine_alpha, 0.0, 1.0e3);
     constants.mie_particle = read_choice<MieParticle>(reader, file, metadata_keys::mie_particle, recipe_names::mie_particles);
     constants.mie_particle_diameter_nm = reader.number(metadata_keys::mie_particle_diameter_nm, 0.0, 1.0e4);
+    if (constants.mie_particle_diameter_nm > 0.0 && constants.mie_particle_diameter_nm < 1.0)
+        throw InputError(fmt::format("{}: metadata '{}': {} is out of range; allowed: 0 or 1 to 10000", file,
+                                     metadata_keys::mie_particle_diameter_nm, constants.mie_particle_diameter_nm));
     if (!reader.has(metadata_keys::sigma_s_mie_shape)) return;
     try {
         constants.sigma_s_mie_shape = spectrum_from_text(reader.text(metadata_keys::sigma_s_mie_shape));

@@ -254,6 +254,8 @@ BaseColorRecipe read_base_color(TomlSection section) {
     color.draine_alpha = section.number("draine_alpha", color.draine_alpha, NumberRange::between(0.0, 1.0e3));
     color.mie_particle = read_choice(section, "mie_particle", color.mie_particle, names::mie_particles);
     color.mie_particle_diameter_nm = section.number("mie_particle_diameter_nm", 0.0, NumberRange::from_zero(1.0e4));
+    if (color.mie_particle_diameter_nm > 0.0 && color.mie_particle_diameter_nm < 1.0)
+        section.fail("mie_particle_diameter_nm", "is out of range; allowed: 0 (as large as the crystal's spheres) or 1 to 10000");
     color.defect_concentration = section.number("defect_concentration", 0.0, NumberRange::between(0.0, 0.2));
     if (color.defect_concentration > 0.0 && section.has("sigma_s_mie_per_mm"))
         section.fail("defect_concentration", "sigma_s_mie_per_mm follows from it: give one of the two");

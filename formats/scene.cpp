@@ -161,7 +161,7 @@ ObjectDescription read_object(TomlSection section, const std::vector<std::string
     if (object.kind == ObjectKind::plane) object.size_mm = section.number("size_mm", object.size_mm, length);
     object.translate_mm = section.vector3("translate_mm", object.translate_mm, NumberRange::between(-1.0e7, 1.0e7));
     object.rotate_deg = section.vector3("rotate_deg", object.rotate_deg, NumberRange::between(-3.6e4, 3.6e4));
-    object.scale = section.number("scale", object.scale, NumberRange::positive(1.0e6));
+    object.scale = section.number("scale", object.scale, NumberRange::between(1.0e-4, 1.0e6));
     section.finish();
     return object;
 }

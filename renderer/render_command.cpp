@@ -206,6 +206,11 @@ int render_command(int argc, char** argv) {
                scene.render.width, scene.render.height, outcome.finished_samples, format_duration(outcome.seconds),
                double(film.total_samples()) / std::max(1.0e-9, outcome.seconds), counters.truncated_paths, counters.lost_paths,
                counters.not_a_number);
+    // From here on the missing light shows: the body of a milky opal turns dark and reddish.
+    if (double(counters.truncated_paths) > 0.01 * double(film.total_samples()))
+        fmt::print(stderr,
+                   "opal-render: warning: {:.1f} % of the paths were cut off after {} bounces; raise render.max_bounces\n",
+                   100.0 * double(counters.truncated_paths) / double(film.total_samples()), scene.render.max_bounces);
     if (counters.majorant_violations > 0)
         fmt::print(stderr, "opal-render: warning: {} collisions met a field above its majorant; please report the scene\n",
                    counters.majorant_violations);

@@ -14,12 +14,12 @@ struct PlanePair {
     float g_per_nm;                ///< |G|
     float form;                    ///< |Fourier coefficient of the permittivity| over the contrast n_sphere^2 - n_medium^2
     int h, k, l;                   ///< of stacked crystals: hexagonal H, K and the order along the stacking axis
-    float coherence_nm = 3.0e38f;  ///< a block of this family is no thicker than this, whatever the grain's blocks are
-    float share = 1.0f;            ///< part of the volume in which this family exists
+    float coherence_nm = 3.0e38f;  ///< mean thickness of a block of this family where faults limit it
+    int twin = 0;                  ///< of stacked crystals: 1 a family of the lattice's own stacking, -1 of its twin's; 0 of both
 };
 
-/// Enough for spheres of 1000 nm: |G| <= 2 n / 360 nm.
-inline constexpr int max_plane_pairs = 1024;
+/// Enough for spheres of 1000 nm and indices of 4: |G| <= 2 n / 360 nm.
+inline constexpr int max_plane_pairs = 16384;
 /// Pairs that one grain crossing may test: a bit each in the path's "already tested" mask.
 inline constexpr int max_tested_pairs = 64;
 

@@ -27,6 +27,8 @@ struct GrainVisit {
     bool fresh = true;               ///< nothing below is drawn yet
     bool at_boundary = false;        ///< the stay begins where the light comes in from outside the grain
     float block_nm = 0.0f;           ///< thickness of a coherent block
+    float block_factor = 1.0f;       ///< this stay's, on the mean thickness of blocks
+    float own_excess = 1.0f;         ///< twins: see own_twin_excess
     uint64_t p_polarized = 0;        ///< a bit per family: how the light is polarized towards it
     float max_rate_per_mm = 0.0f;    ///< where rates saturate
     Quaternion object_from_lattice;  ///< with the tilt of this stay
@@ -51,15 +53,26 @@ struct GrainVisit {
     }
 };
 
-/// Mean thickness times a triangular factor in [0.5, 1.5]: the spread of block sizes washes out fringes that no real opal shows.
-OPAL_HD inline float draw_coherence_nm(float mean_nm, PathRandom& random) {
-    return mean_nm * (0.5f + 0.5f * (random.next() + random.next()));
+/// Triangular factor in [0.5, 1.5] on the mean thickness of a block: the spread of block sizes washes out fringes that no real
+/// opal shows.
+OPAL_HD inline float draw_block_factor(PathRandom& random) {
+    return 0.5f + 0.5f * (random.next() + random.next());
+}
+
+/// Of the layers of a grain of n layers that starts in the lattice's own sense, the mean part by which those of that sense
+/// outnumber the twin's: each layer keeps the sense but for a probability `fault`, so that after m layers the excess is exp(-2
+/// fault m).
+OPAL_HD inline float own_twin_excess(float fault, float layers) {
+    const float x = 2.0f * fault * layers;
+    return x > 1.0e-4f ? -expm1f(-x) / x : 1.0f;
 }
 
 template <int N>
 OPAL_HD inline void begin_visit(const OpalView& opal, GrainVisit<N>& visit, PathRandom& random) {
     const float size_mm = opal.grain_size_mm[visit.grain - 1] * opal.world_from_object.scale;
-    visit.block_nm = min_of(draw_coherence_nm(opal.coherence_nm, random), size_mm * 1.0e6f);
+    visit.block_factor = draw_block_factor(random);
+    visit.block_nm = min_of(visit.block_factor * opal.coherence_nm, size_mm * 1.0e6f);
+    visit.own_excess = own_twin_excess(opal.fault, size_mm * 1.0e6f / opal.layer_nm);
     visit.p_polarized = (uint64_t(random.next_bits()) << 32) | random.next_bits();
     visit.max_rate_per_mm = opal.max_odds / size_mm;
     visit.object_from_lattice = opal.orientations[visit.grain - 1];
@@ -84,9 +97,12 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
         const PlanePair& pair = opal.pairs[k];
         const float cosine = fabsf(dot(lattice_direction, pair.normal));
         if (cosine < 1.0e-4f) continue;
-        const BeamGeometry beam{
-            cosine,    pair.g_per_nm, pair.form, min_of(visit.block_nm, pair.coherence_nm), ((visit.p_polarized >> k) & 1u) != 0,
-            pair.share};
+        const BeamGeometry beam{cosine,
+                                pair.g_per_nm,
+                                pair.form,
+                                min_of(visit.block_nm, visit.block_factor * pair.coherence_nm),
+                                ((visit.p_polarized >> k) & 1u) != 0,
+                                pair.twin == 0 ? 1.0f : 0.5f * (1.0f + float(pair.twin) * visit.own_excess)};
         float* rate_per_mm = rates.rate_per_mm[rates.count];
         const bool any = opal.diffraction == Diffraction::laue
                              ? laue_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm)

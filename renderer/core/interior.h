@@ -33,7 +33,7 @@ struct InteriorEvent {
 /// Two-beam theory speaks of one strong family at a time.
 template <int N>
 OPAL_HD inline bool is_multi_beam(const OpalView& opal, const GrainVisit<N>& visit) {
-    const float half_per_mm = visit.max_rate_per_mm / opal.max_odds;  // odds 1 over the grain's size
+    const float half_per_mm = visit.max_rate_per_mm / (opal.max_odds + 1.0f);  // odds 1 over the grain's size, saturated
     int strong = 0;
     for (int i = 0; i < visit.present().count; ++i) strong += visit.present().rate_per_mm[i][0] > half_per_mm ? 1 : 0;
     return strong > 1;
@@ -71,8 +71,8 @@ OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& 
     const EwaldChance hero = ewald_chance(opal, optics, 0, lattice_direction, u);
     if (hero.pair < 0) {
         for (int i = 1; i < weights.count; ++i)
-            weights.ratio.v[i] *=
-                (1.0f - ewald_chance(opal, optics, i, lattice_direction, u).probability) / (1.0f - hero.probability);
+            weights.ratio.v[i] *= (1.0f - ewald_chance(opal, optics, i, lattice_direction, u).probability) /
+                                  max_of(1.0e-7f, 1.0f - hero.probability);
         return false;
     }
     // The direction depends on the wavelength.

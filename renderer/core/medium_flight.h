@@ -131,7 +131,7 @@ class MediumFlight {
         const float hero_per_mm = rest[1] * medium_.sigma_rayleigh.v[0] + rest[2] * medium_.sigma_mie.v[0];
         if (random_.next() * rest_per_mm < hero_per_mm) return scatter(rest[1], rest[2]);
         float largest = 0.0f;
-        for (int i = 0; i < N; ++i) {
+        for (int i = 0; i < N && i < weights.count; ++i) {
             const float scattered_per_mm = rest[1] * medium_.sigma_rayleigh.v[i] + rest[2] * medium_.sigma_mie.v[i];
             const float null_per_mm = max_of(0.0f, rest_per_mm - scattered_per_mm);
             const float kept_per_mm = max_of(0.0f, null_per_mm - rest[0] * medium_.sigma_a.v[i]);

@@ -97,6 +97,10 @@ class PathTracer {
                 const InteriorEvent event =
                     cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, ahead, visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
+                    if (!(dot(event.direction, event.direction) > 0.5f)) {
+                        ++counters_.not_a_number;
+                        return;
+                    }
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
                     specular_ = true;
                     // Going back and forth between two beams is one event, however many turns it takes.

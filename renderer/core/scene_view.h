@@ -44,6 +44,8 @@ struct OpalView {
     PlanePair pairs[max_tested_pairs];
     int num_pairs = 0;
     float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
+    float fault = 0.0f;             ///< probability of a stacking fault per layer
+    float layer_nm = 204.0f;        ///< distance of stacked layers
     float mosaic_kappa = 0.0f;      ///< 0: no mosaic spread
     float max_odds = 400.0f;        ///< where the odds of reflection over a grain's size saturate
     float ewald_tolerance = 0.01f;

@@ -164,6 +164,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     opal.surface_disperses = optics_.surface_disperses;
     opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
     opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
+    opal.fault = float(constants.stacking_fault_probability);
+    opal.layer_nm = float(stacked_layer_nm(constants.sphere_diameter_nm));
     if (constants.mosaic_spread_deg > 0.0)
         opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
     grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());

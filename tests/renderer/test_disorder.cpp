@@ -6,6 +6,7 @@
 
 #include "chi_square.h"
 #include "formats/units.h"
+#include "renderer/core/grain_visit.h"
 #include "renderer/core/mosaic.h"
 #include "renderer/host/stacking.h"
 
@@ -112,35 +113,45 @@ double stack_intensity(double fault, double turns, int layers, int stacks) {
 
 /// Peaks of the rods against stacks of 600 layers: where they are, how high and how much of the rod's intensity lies in each
 /// half.
-TEST(Stacking, PeaksAreThoseOfDrawnStacks) {
+TEST(Stacking, PeaksAreAsHighAsTheirRods) {
     for (const double fault : {0.02, 0.1, 0.3, 0.8, 0.97}) {
         const std::vector<StackingPeak> peaks = stacking_peaks(fault);
         double weight = 0.0;
         for (const StackingPeak& peak : peaks) weight += peak.weight;
         EXPECT_NEAR(weight, 1.0, 1e-12);
         const StackingPeak& strongest = peaks[0].weight > peaks[1].weight ? peaks[0] : peaks[1];
-        const auto sum_of_peaks = [&](double turns) {
+        double sum = 0.0;
+        for (const StackingPeak& peak : peaks) {
+            const double r = peak.correlation;
+            sum += peak.weight * (1.0 - r * r) / (1.0 + r * r - 2.0 * r * std::cos(2.0 * pi * (strongest.turns - peak.turns)));
+        }
+        EXPECT_NEAR(sum / rod_intensity(fault, strongest.turns), 1.0, 1e-9) << fault;
+    }
+}
+
+/// The rod's intensity against drawn stacks, each an exponential variate around it: 4 standard errors of their mean, and what
+/// stacks of a finite number of layers lack, (height)/(layers).
+TEST(Stacking, RodsAreThoseOfDrawnStacks) {
+    for (const double fault : {0.02, 0.1, 0.3, 0.47, 0.8, 0.97})
+        for (const double turns : {0.0, 0.2, 0.33, 0.36, 0.5}) {
+            constexpr int layers = 1000, stacks = 1000;
+            const double expected = rod_intensity(fault, turns);
+            EXPECT_NEAR(stack_intensity(fault, turns, layers, stacks) / expected, 1.0,
+                        4.0 / std::sqrt(double(stacks)) + 60.0 / layers)
+                << fault << " " << turns;
+        }
+}
+
+/// No jump where the twins' peaks meet, nor where hcp's second peak begins.
+TEST(Stacking, PeaksChangeWithoutAJump) {
+    for (const double fault : {2.0 * std::sqrt(3.0) - 3.0, 0.5}) {
+        const auto layers = [](const std::vector<StackingPeak>& peaks) {
             double sum = 0.0;
-            for (const StackingPeak& peak : peaks) {
-                const double r = peak.correlation;
-                sum += peak.weight * (1.0 - r * r) / (1.0 + r * r - 2.0 * r * std::cos(2.0 * pi * (turns - peak.turns)));
-            }
+            for (const StackingPeak& peak : peaks)
+                if (std::abs(peak.turns - 0.5) < 0.01) sum += peak.weight * (1.0 + peak.correlation) / (1.0 - peak.correlation);
             return sum;
         };
-        double highest = 0.0, highest_turns = 0.0;
-        for (double turns = strongest.turns - 0.08; turns < strongest.turns + 0.08; turns += 0.002) {
-            const double intensity = stack_intensity(fault, turns, 600, 400);
-            if (intensity > highest) {
-                highest = intensity;
-                highest_turns = turns;
-            }
-        }
-        // The peak's height is its layers (1 + r) / (1 - r); 400 stacks know it to 5 %, the highest of many draws is a little
-        // above; the part of the peaks that is odd around their middle, which the families leave out, moves it by a tenth of its
-        // width.
-        const double width = (1.0 - strongest.correlation) / (2.0 * pi);
-        EXPECT_NEAR(highest_turns, strongest.turns, 0.004 + 1.0 * width) << fault;
-        EXPECT_NEAR(highest / sum_of_peaks(strongest.turns), 1.0, 0.25) << fault;
+        EXPECT_NEAR(layers(stacking_peaks(fault - 1e-6)), layers(stacking_peaks(fault + 1e-6)), 0.01) << fault;
     }
 }
 
@@ -149,15 +160,36 @@ TEST(Stacking, FewFaultsGiveBothTwinsOfFcc) {
     std::vector<PlanePair> fcc = stacked_pairs(crystal, 0.0, 360.0);
     const std::vector<PlanePair> twins = stacked_pairs(crystal, 1e-9, 360.0);
     double sharp = 0.0, blurred = 0.0;
-    for (const PlanePair& pair : twins) (pair.share == 1.0f ? sharp : blurred) += 1.0;
-    // Every plane of fcc is among them with its own strength; planes off the stacking axis' rods come once for each twin.
+    for (const PlanePair& pair : twins) (pair.twin == 0 ? sharp : blurred) += 1.0;
+    // Planes off the stacking axis' rods come once for each twin; those of the lattice's own are fcc's.
     EXPECT_EQ(sharp + 0.5 * blurred, double(fcc.size()));
     for (const PlanePair& pair : fcc) {
         const auto same = [&](const PlanePair& twin) {
-            return std::abs(dot(twin.normal, pair.normal)) > 1.0f - 1e-5f &&
+            return twin.twin >= 0 && std::abs(dot(twin.normal, pair.normal)) > 1.0f - 1e-5f &&
                    std::abs(twin.g_per_nm / pair.g_per_nm - 1.0f) < 1e-4f && std::abs(twin.form / pair.form - 1.0f) < 1e-3f;
         };
         EXPECT_TRUE(std::any_of(twins.begin(), twins.end(), same)) << pair.h << pair.k << pair.l;
+    }
+}
+
+/// Layers counted one by one: the share of a grain's layers that are in the sense of its first.
+TEST(Stacking, FewFaultsLeaveAGrainItsOwnSense) {
+    EXPECT_EQ(own_twin_excess(0.0f, 1000.0f), 1.0f);
+    for (const double fault : {1e-4, 1e-3, 0.02}) {
+        constexpr int layers = 2000, grains = 2000;
+        double excess = 0.0;
+        for (int grain = 0; grain < grains; ++grain) {
+            int sense = 1;
+            RandomBlock block{};
+            for (int layer = 0; layer < layers; ++layer) {
+                if (layer % 2 == 0) block = random_block(10, RandomStream::bench, std::uint64_t(grain), std::uint32_t(layer / 2));
+                excess += sense;
+                if (uniform_double(block.value[2 * (layer % 2)], block.value[2 * (layer % 2) + 1]) < fault) sense = -sense;
+            }
+        }
+        EXPECT_NEAR(excess / layers / grains, double(own_twin_excess(float(fault), float(layers))),
+                    4.0 / std::sqrt(double(grains)))
+            << fault;
     }
 }
 
