@@ -79,15 +79,4 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
     return count;
 }
 
-/// Exact Bragg wavelength (vacuum nm) of planes with |G| met at cosine `cosine` to their normal.
-OPAL_HD inline float bragg_wavelength_nm(float n_eff, float cosine, float g_per_nm) {
-    return 2.0f * n_eff * cosine / g_per_nm;
-}
-
-/// Relative width of the stop band at normal incidence, |eps_G| / n_eff^2.
-inline double relative_stop_band_width(const CrystalParameters& crystal, double g_per_nm) {
-    const double n = effective_index(crystal);
-    return fabs(permittivity_coefficient(crystal, g_per_nm)) / (n * n);
-}
-
 }  // namespace opal
