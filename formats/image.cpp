@@ -28,8 +28,8 @@ void write_image(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
     // Libraries below OpenImageIO can lose a late write error (full disk); a file that reads back whole has none.
     const std::unique_ptr<OIIO::ImageInput> check = OIIO::ImageInput::open(name);
     std::vector<float> row(std::size_t(spec.width) * spec.nchannels);
-    if (!check ||
-        !check->read_scanlines(0, 0, spec.height - 1, spec.height, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, row.data()))
+    if (!check || !check->read_scanlines(0, 0, spec.y + spec.height - 1, spec.y + spec.height, 0, 0, spec.nchannels,
+                                         OIIO::TypeDesc::FLOAT, row.data()))
         throw SystemError(fmt::format("{}: writing failed: the file does not read back (disk full?)", path.string()));
     file.commit();
 }
@@ -39,6 +39,10 @@ void write_image(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
 void write_exr(const std::filesystem::path& path, const Image& image) {
     OIIO::ImageSpec spec(image.width, image.height, image.num_channels(), OIIO::TypeDesc::FLOAT);
     spec.channelnames = image.channel_names;
+    spec.x = image.x0;
+    spec.y = image.y0;
+    if (image.full_width > 0) spec.full_width = image.full_width;
+    if (image.full_height > 0) spec.full_height = image.full_height;
     spec.attribute("compression", "zip");
     // Left out, OpenImageIO fills in the time of writing; the same input must give the same bytes.
     spec.attribute("DateTime", "");
@@ -56,6 +60,12 @@ Image read_image(const std::filesystem::path& path) {
     Image image;
     image.width = spec.width;
     image.height = spec.height;
+    image.x0 = spec.x;
+    image.y0 = spec.y;
+    if (spec.x != 0 || spec.y != 0 || spec.full_width != spec.width || spec.full_height != spec.height) {
+        image.full_width = spec.full_width;
+        image.full_height = spec.full_height;
+    }
     image.channel_names = spec.channelnames;
     image.pixels.resize(std::size_t(spec.width) * spec.height * spec.nchannels);
     for (const OIIO::ParamValue& attribute : spec.extra_attribs)

@@ -9,10 +9,13 @@
 
 namespace opal {
 
-/// A float image of named channels, interleaved, top row first. Text attributes travel in the file's header.
+/// A float image of named channels, interleaved, top row first. Text attributes travel in the file's header. It may be a part of
+/// a larger picture: OpenEXR's data window within its display window.
 struct Image {
     int width = 0;
     int height = 0;
+    int x0 = 0, y0 = 0;                   ///< of the first pixel, within the whole picture
+    int full_width = 0, full_height = 0;  ///< of the whole picture; 0: this is the whole
     std::vector<std::string> channel_names;
     std::vector<float> pixels;  ///< [(y * width + x) * channels + c]
     std::map<std::string, std::string> attributes;

@@ -77,6 +77,11 @@ SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
 }
 
+/// The four kinds stand in the same order.
+PixelFilter pixel_filter(const RenderDescription& render) {
+    return {static_cast<PixelFilterKind>(render.filter), float(render.filter_radius_px)};
+}
+
 }  // namespace
 
 Camera make_camera(const CameraDescription& description, int width, int height) {
@@ -123,7 +128,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
     view_.stratified = render.sampler == SamplerKind::stratified;
-    view_.tent_filter = render.filter == FilterKind::tent;
+    view_.filter = pixel_filter(render);
 }
 
 void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
