@@ -5,14 +5,17 @@
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
-#include "formats/illuminant.h"
+#include "formats/film_settings.h"
 #include "formats/report.h"
 #include "formats_generated/version.h"
+#include "renderer/cpu/aovs.h"
 #include "renderer/cpu/render_cpu.h"
-#include "renderer/host/tone_mapping.h"
+#include "renderer/host/development.h"
+#include "renderer/render_animation.h"
 #include "renderer/render_command.h"
 #include "renderer/render_options.h"
 #include "renderer/render_report.h"
+#include "renderer/render_still.h"
 
 namespace opal {
 namespace {
@@ -21,6 +24,7 @@ std::map<std::string, std::string> picture_attributes(const RenderOptions& optio
                                                       const HostScene& host, Xyz white) {
     return {{"opal:command", options.command()},
             {"opal:scene", scene_to_toml(scene)},
+            {film_attribute, film_to_toml(scene.film)},
             {"opal:recipe", host.recipe_toml()},
             {"opal:white", fmt::format("xy {:.5f} {:.5f} is neutral: RGB is adapted from it to D65 by Bradford's matrix",
                                        chromaticity_of(white).x, chromaticity_of(white).y)},
@@ -30,9 +34,10 @@ std::map<std::string, std::string> picture_attributes(const RenderOptions& optio
 
 void print_summary(const RenderOptions& options, const SceneDescription& scene, const RenderOutcome& outcome, const Film& film) {
     const PathCounters& counters = outcome.counters;
+    const PixelWindow window = scene.render.window();
     fmt::print("{}{} and {}: {}x{}, {} samples per pixel, {} ({:.0f} paths/s); truncated paths {}, lost {}, NaN {}\n",
                outcome.interrupted ? "interrupted; wrote what is there: " : "", options.output.string(),
-               options.png().filename().string(), scene.render.width, scene.render.height, outcome.finished_samples,
+               options.png().filename().string(), window.width(), window.height(), outcome.finished_samples,
                format_duration(outcome.seconds), double(film.total_samples()) / std::max(1.0e-9, outcome.seconds),
                counters.truncated_paths, counters.lost_paths, counters.not_a_number);
     // From here on the missing light shows: the body of a milky opal turns dark and reddish.
@@ -50,16 +55,10 @@ void print_summary(const RenderOptions& options, const SceneDescription& scene, 
 
 }  // namespace
 
-int command_render(int argc, char** argv) {
-    RenderOptions options;
-    if (const std::optional<int> code = parse_render_options(argc, argv, options)) return *code;
-    const SceneDescription scene = read_scene(options);
+StillResult render_still(const RenderOptions& options, const SceneDescription& scene) {
     require_writable(options.output);
     require_writable(options.png());
     if (!options.stats_file.empty()) require_writable(options.stats_file);
-
-    std::optional<tbb::global_control> limit;
-    if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
     const int threads = int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 
     const Stopwatch loading;
@@ -69,9 +68,8 @@ int command_render(int argc, char** argv) {
     for (const std::string& notice : notices) fmt::print(stderr, "opal-render: note: {}\n", notice);
     const double loading_s = loading.seconds();
 
-    catch_interrupts();
-    const Xyz white = xyz_of(illuminant_spectrum(scene.film.white));
-    Film film(scene.render.width, scene.render.height, scene.film.spectral, white);
+    const Xyz white = film_white(scene.film);
+    Film film(scene.render.window(), scene.render.width, scene.render.height, scene.film.spectral, white);
     RenderOutcome outcome;
     {
         Progress progress("rendering");
@@ -84,10 +82,27 @@ int command_render(int argc, char** argv) {
     add_aovs(host, intersector, scene.film.aovs, image);
     image.attributes = picture_attributes(options, scene, host, white);
     write_exr(options.output, image);
-    write_png(options.png(), tone_mapped(image, scene.film.exposure_ev));
+    Image display = developed(image, scene.film, scene.film, options.output.string());
+    write_png(options.png(), display);
     if (!options.stats_file.empty())
         write_report(options.stats_file, render_report(scene, host, outcome, film, loading_s, threads));
     print_summary(options, scene, outcome, film);
+    return {std::move(display), outcome.interrupted};
+}
+
+int command_render(int argc, char** argv) {
+    RenderOptions options;
+    if (const std::optional<int> code = parse_render_options(argc, argv, options)) return *code;
+    const SceneDescription scene = read_scene(options);
+    std::optional<tbb::global_control> limit;
+    if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
+    catch_interrupts();
+    if (scene.animation.frames > 1) {
+        render_animation(options, scene);
+        return 0;
+    }
+    if (!options.frames.empty()) throw InputError(fmt::format("--frames {}: the scene has no [animation]", options.frames));
+    render_still(options, scene);
     return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "formats/error.h"
+#include "renderer/pixel_window_flag.h"
 #include "renderer/render_command.h"
 
 namespace opal {
@@ -15,7 +16,8 @@ namespace {
 constexpr const char* footer = R"(Lengths are mm, wavelengths vacuum nm, angles degrees.
 
 Writes OUT.exr (linear sRGB: R, G, B, the variance of each mean, samples per pixel; the resolved scene and the recipe in
-the header) and OUT.png beside it, tone-mapped. Ctrl-C writes what is there.
+the header) and OUT.png beside it, developed as [film] says (opal-render develop makes it anew). Ctrl-C writes what is
+there. A scene with an [animation] gives OUT.0001.exr, OUT.0002.exr ... and OUT.sheet.png, all frames small on one sheet.
 
 Examples:
   opal-render examples/precious_opal/scene.toml -o out/precious_opal.exr
@@ -46,6 +48,8 @@ std::string RenderOptions::command() const {
     for (const std::string& assignment : overrides) text += " --set " + assignment;
     if (samples > 0) text += fmt::format(" --spp {}", samples);
     if (!time.empty()) text += " --time " + time;
+    if (!crop.empty()) text += " --crop " + crop;
+    if (!frames.empty()) text += " --frame " + frames;
     if (seed) text += fmt::format(" --seed {}", *seed);
     return text;
 }
@@ -64,8 +68,15 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
     app.add_option("--seed", options.seed, "random seed, instead of render.seed")->check(CLI::Range(std::int64_t(0), INT64_MAX));
     app.add_option("--device", options.device, "auto, cpu or cuda (this build: cpu)")
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+    app.add_option("--crop", options.crop, "draw pixels x0,y0,x1,y1 alone, the ends not counted, instead of render.crop");
+    app.add_option("--frames", options.frames, "of an animation: A:B, both counted, from 1");
+    app.add_option("--frame", options.frames, "of an animation: one frame");
+    std::string tev;
+    CLI::Option* const tev_option =
+        app.add_option("--tev", tev, "show the picture while it is made in the viewer tev: host, host:port (default port 14158)");
     app.add_option("--stats", options.stats_file, "write statistics as JSON");
     if (const std::optional<int> code = parse_command_line(app, argc, argv)) return code;
+    if (*tev_option) options.tev = parse_tev_address(tev);
     options.time_limit_s = parse_duration(options.time);
     if (options.device == "cuda") throw InputError("--device cuda: this build has no CUDA backend; allowed: auto, cpu");
     if (options.output.extension() != ".exr")
@@ -75,7 +86,12 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
 }
 
 SceneDescription read_scene(const RenderOptions& options) {
-    SceneDescription scene = read_scene(options.scene_file, options.overrides);
+    std::vector<std::string> overrides = options.overrides;
+    if (!options.crop.empty()) {
+        const PixelWindow window = parse_pixel_window(options.crop);
+        overrides.push_back(fmt::format("render.crop=[{}, {}, {}, {}]", window.x0, window.y0, window.x1, window.y1));
+    }
+    SceneDescription scene = read_scene(options.scene_file, overrides);
     if (options.samples > 0) scene.render.samples = options.samples;
     if (options.seed) scene.render.seed = std::uint64_t(*options.seed);
     return scene;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/scene.h"
+#include "renderer/host/tev_client.h"
 
 namespace opal {
 
@@ -21,6 +22,9 @@ struct RenderOptions {
     int threads = 0;            ///< 0: all cores
     std::optional<std::int64_t> seed;
     std::string device = "auto";
+    std::string crop;               ///< "x0,y0,x1,y1"; empty: the scene's
+    std::string frames;             ///< "A:B" or "N"; empty: all
+    std::optional<TevAddress> tev;  ///< the viewer that shows the picture while it is made
 
     /// The picture for people, beside the output.
     std::filesystem::path png() const;

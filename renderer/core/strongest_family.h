@@ -32,8 +32,8 @@ OPAL_HD inline FamilyTurn turn_by_family(const OpalView& opal, const SpectrumTab
     for (int round = 0; round < 3; ++round) bragg_nm = 2.0f * cosine * table_at(opal.n_eff, bragg_nm) / pair.g_per_nm;
     if (!(bragg_nm > spectrum_min_nm && bragg_nm < spectrum_max_nm)) return turn;
     const float block_nm = min_of(min_of(opal.coherence_nm, pair.coherence_nm), size_mm * 1.0e6f);
-    const float coupling = pair.form * table_at(opal.contrast, bragg_nm) * block_nm /
-                           (table_at(opal.n_eff, bragg_nm) * bragg_nm * cosine);
+    const float coupling =
+        pair.form * table_at(opal.contrast, bragg_nm) * block_nm / (table_at(opal.n_eff, bragg_nm) * bragg_nm * cosine);
     const float half_width_nm = bragg_nm * (1.0f + coupling) / (pair.g_per_nm * block_nm);
     const float step_nm = 2.0f * family_band_half_widths * half_width_nm / float(family_band_lanes * family_band_batches);
     float sum_nm = 0.0f;
@@ -41,7 +41,8 @@ OPAL_HD inline FamilyTurn turn_by_family(const OpalView& opal, const SpectrumTab
         LaneOptics<family_band_lanes> optics;
         float response[family_band_lanes];
         for (int i = 0; i < family_band_lanes; ++i) {
-            const float place = float(batch * family_band_lanes + i) + 0.5f - 0.5f * float(family_band_lanes * family_band_batches);
+            const float place =
+                float(batch * family_band_lanes + i) + 0.5f - 0.5f * float(family_band_lanes * family_band_batches);
             const float wavelength_nm = bragg_nm + place * step_nm;
             const Vec3 observer = table_at(spectra.observer, wavelength_nm);
             const bool visible = wavelength_nm > spectrum_min_nm && wavelength_nm < spectrum_max_nm;

@@ -51,7 +51,8 @@ Rgb color_of_reflectance(const SpectrumTables& tables, const UpsampledColor& alb
         const Vec3 observer = tables.observer[i];
         lit = {lit.x + reflected * double(observer.x), lit.y + reflected * double(observer.y),
                lit.z + reflected * double(observer.z)};
-        white = {white.x + light * double(observer.x), white.y + light * double(observer.y), white.z + light * double(observer.z)};
+        white = {white.x + light * double(observer.x), white.y + light * double(observer.y),
+                 white.z + light * double(observer.z)};
     }
     const Xyz unit_white = {white.x / white.y, 1.0, white.z / white.y};
     const Rgb3d rgb = linear_srgb_from_xyz(bradford_adaptation(unit_white, srgb_white) *
@@ -92,8 +93,8 @@ void write_albedo(const AovScene& scene, const FirstHit&, int x, int y, float* t
         const FirstHit first = first_hit(scene, float(x) + (float(sample % across) + 0.5f) / across,
                                          float(y) + (float(sample / across) + 0.5f) / across);
         if (!first.found) continue;
-        const Rgb albedo = opal_behind(scene.view, first.surface) ? Rgb{1.0f, 1.0f, 1.0f}
-                                                                  : scene.albedos[std::size_t(first.surface.material)];
+        const Rgb albedo =
+            opal_behind(scene.view, first.surface) ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
         target[0] += albedo.r / float(across * across);
         target[1] += albedo.g / float(across * across);
         target[2] += albedo.b / float(across * across);
@@ -133,8 +134,8 @@ void write_hkl(const AovScene& scene, const FirstHit& first, int, int, float* ta
     float cos_transmitted = 0.0f;
     fresnel_dielectric(cos_incident, index, cos_transmitted);
     const Vec3 refracted = refract(direction, normal, index, cos_incident, cos_transmitted);
-    const FamilyTurn turn = first_turn(
-        scene, *opal, {offset_origin(first.surface.position, first.surface.geometric_normal, refracted), refracted});
+    const FamilyTurn turn =
+        first_turn(scene, *opal, {offset_origin(first.surface.position, first.surface.geometric_normal, refracted), refracted});
     if (turn.pair < 0) return;
     const PlanePair& pair = opal->pairs[turn.pair];
     const float sign = turn.towards_g ? 1.0f : -1.0f;

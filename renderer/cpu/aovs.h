@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/image.h"
 #include "renderer/cpu/embree_scene.h"
 #include "renderer/host/host_scene.h"
 

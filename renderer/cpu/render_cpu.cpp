@@ -34,16 +34,19 @@ template <int N>
 void render_tile(const HostScene& scene, const EmbreeScene& intersector, int tile, int first_sample, int end_sample, Film& film,
                  TileSums& sums) {
     const SceneView& view = scene.view();
-    const int tiles_across = (view.width + tile_size - 1) / tile_size;
+    const PixelWindow& window = film.window();
+    const int tiles_across = (film.width() + tile_size - 1) / tile_size;
     const int x0 = tile % tiles_across * tile_size, y0 = tile / tiles_across * tile_size;
-    for (int y = y0; y < std::min(y0 + tile_size, view.height); ++y)
-        for (int x = x0; x < std::min(x0 + tile_size, view.width); ++x)
+    for (int y = y0; y < std::min(y0 + tile_size, film.height()); ++y)
+        for (int x = x0; x < std::min(x0 + tile_size, film.width()); ++x)
             for (int sample = first_sample; sample < end_sample; ++sample) {
-                const std::uint32_t pixel = std::uint32_t(y) * std::uint32_t(view.width) + std::uint32_t(x);
+                // A path's random numbers belong to its pixel of the whole picture, so that a part of it shows the same.
+                const std::uint32_t pixel =
+                    std::uint32_t(window.y0 + y) * std::uint32_t(view.width) + std::uint32_t(window.x0 + x);
                 PathWavelengths<N> wavelengths;
                 const PathResult<N> result =
                     trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, sums.counters);
-                film.add(view.spectra, pixel, film_sample(wavelengths, result), sums.totals);
+                film.add(view.spectra, std::uint32_t(y * film.width() + x), film_sample(wavelengths, result), sums.totals);
             }
 }
 
@@ -69,7 +72,7 @@ int pass_size(int done, double elapsed_s, double time_limit_s) {
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
                          const std::function<void(double)>& progress) {
     const SceneView& view = scene.view();
-    const int tiles_across = (view.width + tile_size - 1) / tile_size, tiles_down = (view.height + tile_size - 1) / tile_size;
+    const int tiles_across = (film.width() + tile_size - 1) / tile_size, tiles_down = (film.height() + tile_size - 1) / tile_size;
     const int num_tiles = tiles_across * tiles_down;
     std::vector<TileSums> sums(static_cast<std::size_t>(num_tiles));
     const double total_work = double(num_tiles) * limits.samples;
@@ -100,52 +103,6 @@ RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector,
     }
     outcome.seconds = watch.seconds();
     return outcome;
-}
-
-void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std::vector<std::string>& aovs, Image& image) {
-    if (aovs.empty()) return;
-    const SceneView& view = scene.view();
-    const std::size_t old_channels = image.channel_names.size();
-    for (const std::string& aov : aovs) {
-        if (aov == "normal")
-            for (const char* axis : {"normal.X", "normal.Y", "normal.Z"}) image.channel_names.push_back(axis);
-        else
-            image.channel_names.push_back(aov);
-    }
-    const std::size_t channels = image.channel_names.size();
-    std::vector<float> pixels(std::size_t(image.width) * image.height * channels);
-    tbb::parallel_for(0, image.height, [&](int y) {
-        for (int x = 0; x < image.width; ++x) {
-            const std::size_t pixel = std::size_t(y) * image.width + x;
-            float* target = pixels.data() + pixel * channels;
-            std::copy_n(image.pixels.data() + pixel * old_channels, old_channels, target);
-            target += old_channels;
-            const Ray ray = camera_ray(view.camera, (float(x) + 0.5f) / float(view.width), (float(y) + 0.5f) / float(view.height),
-                                       0.0f, 0.0f);
-            RayHit hit;
-            const bool found = intersector.closest(ray, hit);
-            const Surface surface = found ? surface_at(view, hit) : Surface{};
-            for (const std::string& aov : aovs) {
-                if (aov == "object_id") *target++ = found ? float(hit.mesh) : -1.0f;
-                if (aov == "depth") *target++ = found ? hit.distance_mm : 0.0f;
-                if (aov == "grain_id") {
-                    float grain = 0.0f;
-                    if (found && surface.material < 0) {
-                        const RigidTransform& transform = view.opal.world_from_object;
-                        GrainWalk walk(view.opal.grains, transform.local_from_world_point(surface.position),
-                                       transform.local_from_world_direction(-surface.geometric_normal));
-                        float distance = 0.0f;
-                        grain = float(walk.next_grain(0, distance, 3.0f / view.opal.grains.voxels_per_mm));
-                    }
-                    *target++ = grain;
-                }
-                if (aov == "normal")
-                    for (const float component : {surface.shading_normal.x, surface.shading_normal.y, surface.shading_normal.z})
-                        *target++ = found ? component : 0.0f;
-            }
-        }
-    });
-    image.pixels = std::move(pixels);
 }
 
 }  // namespace opal

@@ -29,8 +29,4 @@ struct RenderOutcome {
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
                          const std::function<void(double)>& progress);
 
-/// Adds the requested channels to a picture from one ray through each pixel's centre: object_id (index in the scene, -1 for
-/// none), grain_id (grain at the surface; 0 for none), depth (mm, 0 for none), normal (.X .Y .Z, world).
-void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std::vector<std::string>& aovs, Image& image);
-
 }  // namespace opal

@@ -31,12 +31,13 @@ void SpectrumTotals::add(const SpectrumTotals& other) {
     samples += other.samples;
 }
 
-Film::Film(int width, int height, bool spectral, Xyz white)
-    : width_(width),
-      height_(height),
+Film::Film(const PixelWindow& window, int full_width, int full_height, bool spectral, Xyz white)
+    : window_(window),
+      full_width_(full_width),
+      full_height_(full_height),
       spectral_(spectral),
       adaptation_(bradford_adaptation(white, srgb_white)),
-      pixels_(std::size_t(width) * height) {
+      pixels_(std::size_t(window.width()) * window.height()) {
     if (spectral) spectra_.assign(pixels_.size() * num_bins, 0.0f);
 }
 
@@ -100,8 +101,14 @@ std::uint64_t Film::total_samples() const {
 
 Image Film::to_image() const {
     Image image;
-    image.width = width_;
-    image.height = height_;
+    image.width = window_.width();
+    image.height = window_.height();
+    image.x0 = window_.x0;
+    image.y0 = window_.y0;
+    if (window_ != PixelWindow{0, 0, full_width_, full_height_}) {
+        image.full_width = full_width_;
+        image.full_height = full_height_;
+    }
     image.channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "sample_count"};
     if (spectral_)
         for (int bin = 0; bin < num_bins; ++bin) image.channel_names.push_back(fmt::format("S0.{}nm", int(bin_centre_nm(bin))));

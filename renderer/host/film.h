@@ -9,6 +9,7 @@
 
 #include "formats/colorimetry.h"
 #include "formats/image.h"
+#include "formats/scene.h"
 #include "renderer/core/path_tracer.h"
 
 namespace opal {
@@ -46,18 +47,25 @@ FilmSample film_sample(const PathWavelengths<N>& wavelengths, const PathResult<N
 /// spectra.
 class Film {
   public:
-    /// RGB is adapted so that light of the chromaticity `white`, XYZ with Y = 1, is neutral (Bradford); spectra are not.
-    Film(int width, int height, bool spectral, Xyz white = srgb_white);
+    /// For the part `window` of a picture of full_width x full_height pixels. RGB is adapted so that light of the chromaticity
+    /// `white`, XYZ with Y = 1, is neutral (Bradford); spectra are not.
+    Film(const PixelWindow& window, int full_width, int full_height, bool spectral, Xyz white = srgb_white);
+    /// For a whole picture.
+    Film(int width, int height, bool spectral, Xyz white = srgb_white)
+        : Film({0, 0, width, height}, width, height, spectral, white) {}
 
-    /// Adds one path's result to a pixel and to `totals`. Pixels may be filled from different threads, each from one at a time.
+    /// Adds one path's result to a pixel (counted row by row within the window) and to `totals`. Pixels may be filled from
+    /// different threads, each from one at a time.
     void add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
+    const PixelWindow& window() const { return window_; }
+    int width() const { return window_.width(); }
+    int height() const { return window_.height(); }
     std::uint32_t samples(std::uint32_t pixel) const { return pixels_[pixel].samples; }
     std::uint64_t total_samples() const;
 
-    /// Channels R, G, B (means), variance.R, variance.G, variance.B (of the means), sample_count, and S0.<nm>nm where spectral.
+    /// The film's window of the picture. Channels R, G, B (means), variance.R, variance.G, variance.B (of the means),
+    /// sample_count, and S0.<nm>nm where spectral.
     Image to_image() const;
 
   private:
@@ -69,7 +77,8 @@ class Film {
 
     Rgb3d rgb_of(Xyz color) const { return linear_srgb_from_xyz(adaptation_ * color); }
 
-    int width_, height_;
+    PixelWindow window_;
+    int full_width_, full_height_;
     bool spectral_;
     Matrix3 adaptation_;
     std::vector<Pixel> pixels_;
