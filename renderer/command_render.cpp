@@ -80,7 +80,7 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
 
     Image image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, image);
-    image.attributes = picture_attributes(options, scene, host, white);
+    image.attributes.merge(picture_attributes(options, scene, host, white));
     write_exr(options.output, image);
     Image display = developed(image, scene.film, scene.film, options.output.string());
     write_png(options.png(), display);

@@ -96,7 +96,7 @@ void write_albedo(const AovScene& scene, const FirstHit&, int x, int y, float* t
                                          float(y) + (float(sample / across) + 0.5f) / across);
         if (!first.found) continue;
         const Rgb albedo =
-            opal_behind(scene.view, first.surface) ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
+            first.surface.body >= 0 ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
         target[0] += albedo.r / float(across * across);
         target[1] += albedo.g / float(across * across);
         target[2] += albedo.b / float(across * across);

@@ -48,7 +48,8 @@ TEST(Scene, CropLiesWithinThePicture) {
     EXPECT_EQ(parse(small + "[8, 16, 64, 17]\n").render.window(), (PixelWindow{8, 16, 64, 17}));
     EXPECT_EQ(parse(minimal).render.window(), (PixelWindow{0, 0, 960, 720}));
     for (const char* bad : {"[0, 0, 65, 48]", "[0, 0, 64, 49]", "[-1, 0, 4, 4]", "[4, 0, 4, 4]", "[0, 5, 4, 4]"})
-        EXPECT_INPUT_ERROR(parse(small + bad + "\n"), "is no part of the picture; allowed: [x0, y0, x1, y1] with 0 <= x0 < x1 <= 64");
+        EXPECT_INPUT_ERROR(parse(small + bad + "\n"),
+                           "is no part of the picture; allowed: [x0, y0, x1, y1] with 0 <= x0 < x1 <= 64");
     for (const char* bad : {"[0, 0, 4]", "3", "[0, 0, 4, 4.5]", "[0, 0, 4, 4, 4]"})
         EXPECT_INPUT_ERROR(parse(small + bad + "\n"), "render.crop: expected");
 }
