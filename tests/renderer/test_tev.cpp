@@ -167,10 +167,8 @@ TEST(Tev, TheViewerHoldsTheLastPicture) {
     Server server;
     const Image last = picture(700, 300, -5.5f);
     {
-        LiveView view(server.address(), "gem.exr");
+        LiveView view(server.address(), "gem.exr", [&] { return last; });
         EXPECT_TRUE(view.connected());
-        for (int i = 0; i < 20; ++i) view.show(picture(700, 300, float(i)));
-        view.show(last);
     }
     const Viewer& viewer = server.finished();
     ASSERT_EQ(viewer.pictures.size(), 1u);
@@ -184,22 +182,34 @@ TEST(Tev, TheViewerHoldsTheLastPicture) {
 }
 
 TEST(Tev, AViewerThatIsNotThereIsNoError) {
-    LiveView view({"127.0.0.1", 1}, "gem");
+    const LiveView view({"127.0.0.1", 1}, "gem", [] { return picture(10, 10, 0.0f); });
     EXPECT_FALSE(view.connected());
-    view.show(picture(10, 10, 0.0f));
 }
 
 /// It hangs up while pictures still come: no signal, no exception, and the connection is known to be dead.
 TEST(Tev, AViewerThatVanishesIsForgotten) {
     Server server(2);
-    LiveView view(server.address(), "gem");
-    for (int i = 0; i < 400 && view.connected(); ++i) {
-        view.show(picture(400, 300, 0.0f));
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    const LiveView view(server.address(), "gem", [] { return picture(1000, 1000, 0.0f); });
+    for (int i = 0; i < 600 && view.connected(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_FALSE(view.connected());
-    view.show(picture(400, 300, 0.0f));
     server.finished();
+}
+
+/// It stays but takes nothing: sending gives up after a while.
+TEST(Tev, AViewerThatHangsIsForgotten) {
+    const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address = {};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(listener, 1), 0);
+    ::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+    TevConnection connection({"127.0.0.1", ntohs(address.sin_port)});
+    EXPECT_TRUE(connection.alive());
+    EXPECT_FALSE(connection.send(TevPacket(std::size_t(64) << 20)));
+    EXPECT_FALSE(connection.alive());
+    ::close(listener);
 }
 
 TEST(Tev, ClosingAPicture) {
