@@ -114,7 +114,7 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
 
     Image image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, image);
-    image.attributes = picture_attributes(options, scene, host, white);
+    image.attributes.merge(picture_attributes(options, scene, host, white));
     if (options.samples_of) add_part(fingerprint, range, scene.render.samples, film, image);
     Image display = developed(image, scene.film, scene.film, options.output.string());
     try {

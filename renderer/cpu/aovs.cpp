@@ -37,9 +37,11 @@ FirstHit first_hit(const AovScene& scene, float x, float y) {
     return first;
 }
 
-/// The opal behind a surface; null for others.
-const OpalView* opal_behind(const SceneView& view, const Surface& surface) {
-    return surface.material < 0 ? &view.opal : nullptr;
+/// The opal behind what was met; null for opaque things and for glass.
+const OpalView* opal_behind(const AovScene& scene, const FirstHit& first) {
+    if (!first.found || first.surface.body < 0) return nullptr;
+    const OpalView& body = scene.view.bodies[first.surface.body];
+    return body.orientations ? &body : nullptr;
 }
 
 /// Linear sRGB of a reflectance under the scene's illuminant, which counts as white.
@@ -78,7 +80,7 @@ void write_normal(const AovScene&, const FirstHit& first, int, int, float* targe
 }
 
 void write_grain_id(const AovScene& scene, const FirstHit& first, int, int, float* target) {
-    const OpalView* opal = first.found ? opal_behind(scene.view, first.surface) : nullptr;
+    const OpalView* opal = opal_behind(scene, first);
     if (!opal) return;
     const RigidTransform& transform = opal->world_from_object;
     GrainWalk walk(opal->grains, transform.local_from_world_point(first.surface.position),
@@ -94,7 +96,7 @@ void write_albedo(const AovScene& scene, const FirstHit&, int x, int y, float* t
                                          float(y) + (float(sample / across) + 0.5f) / across);
         if (!first.found) continue;
         const Rgb albedo =
-            opal_behind(scene.view, first.surface) ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
+            first.surface.body >= 0 ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
         target[0] += albedo.r / float(across * across);
         target[1] += albedo.g / float(across * across);
         target[2] += albedo.b / float(across * across);
@@ -125,7 +127,7 @@ FamilyTurn first_turn(const AovScene& scene, const OpalView& opal, const Ray& in
 }
 
 void write_hkl(const AovScene& scene, const FirstHit& first, int, int, float* target) {
-    const OpalView* opal = first.found ? opal_behind(scene.view, first.surface) : nullptr;
+    const OpalView* opal = opal_behind(scene, first);
     if (!opal || opal->diffraction == Diffraction::none) return;
     const Vec3 direction = first.ray.direction;
     Vec3 normal = first.surface.shading_normal;

@@ -131,6 +131,8 @@ Image Film::to_image() const {
         image.full_height = full_height_;
     }
     image.channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "sample_count"};
+    // Fichet et al. 2021; the radiance of each layer is the mean over its wavelengths, per nm.
+    if (spectral_) image.attributes = {{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "W.m^-2.sr^-1"}};
     if (spectral_)
         for (int bin = 0; bin < num_bins; ++bin) image.channel_names.push_back(fmt::format("S0.{}nm", int(bin_centre_nm(bin))));
     image.pixels.reserve(counts_.size() * image.channel_names.size());

@@ -215,8 +215,10 @@ Image PartMerger::merged() const {
         for (int x = 0; x < image.width; ++x)
             for (const Source& source : sources)
                 image.pixels.push_back((source.summed ? sums : first_.image).pixel(x, y)[source.channel]);
+    // What the library that read the file added is not the picture's.
     std::erase_if(image.attributes,
                   [](const auto& attribute) { return !attribute.first.starts_with("opal:") && attribute.first != "Software"; });
+    image.attributes.insert(sums.attributes.begin(), sums.attributes.end());
     if (missing().empty()) {
         for (const char* attribute : {samples_attribute, all_samples_attribute, fingerprint_attribute})
             image.attributes.erase(attribute);

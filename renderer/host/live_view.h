@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,21 +10,20 @@
 
 namespace opal {
 
-/// Shows a picture in the making in tev. Pictures are handed over and sent by a thread of its own, the newest alone where they
-/// come faster than the viewer takes them, so that rendering never waits for a viewer; one that vanishes is forgotten.
+/// Shows a picture in the making in tev: a thread of its own asks for the picture twice a second and sends it, so that
+/// rendering never waits for a viewer. One that vanishes or hangs is forgotten.
 class LiveView {
   public:
-    /// `name` is the picture's name in the viewer.
-    LiveView(const TevAddress& address, std::string name);
-    /// Sends the last picture out, if the viewer still takes it.
+    /// `name` is the picture's name in the viewer. `picture` gives its present state, with channels R, G and B; it is called from
+    /// the thread, until the object ends.
+    LiveView(const TevAddress& address, std::string name, std::function<Image()> picture);
+    /// Sends the last state, if the viewer still takes it.
     ~LiveView();
     LiveView(const LiveView&) = delete;
     LiveView& operator=(const LiveView&) = delete;
 
-    /// Whether the viewer is there. A picture that none takes need not be made.
+    /// Whether the viewer is there.
     bool connected() const;
-    /// Shows the channels R, G and B.
-    void show(Image picture);
 
   private:
     struct State;
