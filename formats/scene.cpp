@@ -58,6 +58,7 @@ RenderDescription read_render(TomlSection section) {
     render.width = static_cast<int>(section.integer("width", render.width, 1, 65536));
     render.height = static_cast<int>(section.integer("height", render.height, 1, 65536));
     render.samples = static_cast<int>(section.integer("samples", render.samples, 1, 1 << 24));
+    render.noise = section.number("noise", render.noise, NumberRange::between(0.0, 1.0));
     render.max_bounces = static_cast<int>(section.integer("max_bounces", render.max_bounces, 1, 1'000'000));
     render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
     render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
@@ -239,10 +240,11 @@ std::string scene_to_toml(const SceneDescription& scene) {
     const RenderDescription& render = scene.render;
     const CameraDescription& camera = scene.camera;
     std::string text = fmt::format(
-        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = \"{}\"\n"
+        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nnoise = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = "
+        "\"{}\"\n"
         "filter_radius_px = {}\n",
-        render.width, render.height, render.samples, render.max_bounces, render.seed, name(sampler_names, render.sampler),
-        name(filter_names, render.filter), render.filter_radius_px);
+        render.width, render.height, render.samples, render.noise, render.max_bounces, render.seed,
+        name(sampler_names, render.sampler), name(filter_names, render.filter), render.filter_radius_px);
     if (render.crop)
         text += fmt::format("crop = [{}, {}, {}, {}]\n", render.crop->x0, render.crop->y0, render.crop->x1, render.crop->y1);
     text += fmt::format(

@@ -38,6 +38,7 @@ struct RenderDescription {
     int width = 960;
     int height = 720;
     int samples = 256;
+    double noise = 0.0;  ///< relative error of luminance and chroma at which a place gets no more samples; 0: samples everywhere
     int max_bounces = 64;
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;

@@ -8,9 +8,13 @@
 #include "formats/film_settings.h"
 #include "formats/report.h"
 #include "formats_generated/version.h"
+#include "renderer/checkpoint_keeper.h"
 #include "renderer/cpu/aovs.h"
 #include "renderer/cpu/render_cpu.h"
 #include "renderer/host/development.h"
+#include "renderer/host/film_noise.h"
+#include "renderer/host/film_parts.h"
+#include "renderer/host/render_fingerprint.h"
 #include "renderer/render_animation.h"
 #include "renderer/render_command.h"
 #include "renderer/render_options.h"
@@ -32,13 +36,36 @@ std::map<std::string, std::string> picture_attributes(const RenderOptions& optio
             {"Software", std::string("opal-render ") + OPAL_VERSION_STRING}};
 }
 
+/// What makes a picture of some samples mergeable.
+void add_part(const std::string& fingerprint, const SampleRange& range, int all_samples, const Film& film, Image& image) {
+    image.attributes[samples_attribute] = sample_ranges_text({range});
+    image.attributes[all_samples_attribute] = std::to_string(all_samples);
+    image.attributes[fingerprint_attribute] = fingerprint;
+    add_exact_sums(film, image);
+}
+
+/// "256", or where places differ "48.3 (32 at least)".
+std::string samples_text(const RenderOutcome& outcome, const Film& film) {
+    const double mean = double(film.total_samples()) / (double(film.width()) * double(film.height()));
+    return mean == outcome.finished_samples ? std::to_string(outcome.finished_samples)
+                                            : fmt::format("{:.1f} (at least {})", mean, outcome.finished_samples);
+}
+
+/// ", noise 0.021 (95 % of the picture below 0.048)", of the larger of luminance and chroma; nothing where it is not known.
+std::string noise_text(const Film& film) {
+    const std::optional<PictureNoise> noise = picture_noise(film);
+    if (!noise) return "";
+    return fmt::format(", noise {:.2g} (95 % of the picture below {:.2g})", noise->median.larger(),
+                       noise->percentile_95.larger());
+}
+
 void print_summary(const RenderOptions& options, const SceneDescription& scene, const RenderOutcome& outcome, const Film& film) {
     const PathCounters& counters = outcome.counters;
     const PixelWindow window = scene.render.window();
-    fmt::print("{}{} and {}: {}x{}, {} samples per pixel, {} ({:.0f} paths/s); truncated paths {}, lost {}, NaN {}\n",
+    fmt::print("{}{} and {}: {}x{}, {} samples per pixel{}, {} ({:.0f} paths/s); truncated paths {}, lost {}, NaN {}\n",
                outcome.interrupted ? "interrupted; wrote what is there: " : "", options.output.string(),
-               options.png().filename().string(), window.width(), window.height(), outcome.finished_samples,
-               format_duration(outcome.seconds), double(film.total_samples()) / std::max(1.0e-9, outcome.seconds),
+               options.png().filename().string(), window.width(), window.height(), samples_text(outcome, film), noise_text(film),
+               format_duration(outcome.seconds), double(outcome.new_samples) / std::max(1.0e-9, outcome.seconds),
                counters.truncated_paths, counters.lost_paths, counters.not_a_number);
     // From here on the missing light shows: the body of a milky opal turns dark and reddish.
     if (double(counters.truncated_paths) > 0.01 * double(film.total_samples()))
@@ -69,23 +96,36 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     const double loading_s = loading.seconds();
 
     const Xyz white = film_white(scene.film);
-    Film film(scene.render.window(), scene.render.width, scene.render.height, scene.film.spectral, white);
+    const SampleRange range = options.samples_of.value_or(SampleRange{0, std::uint32_t(scene.render.samples)});
+    const std::string fingerprint = render_fingerprint(scene);
+    Film film(scene.render.window(), scene.render.width, scene.render.height, scene.film.spectral, white, range.first);
+    CheckpointKeeper keeper(options.checkpoint, options.output, fmt::format("{}first sample = {}\n", fingerprint, range.first),
+                            film);
+    keeper.find_earlier(int(range.end));
+    keeper.start();
     RenderOutcome outcome;
     {
         Progress progress("rendering");
-        outcome = render_cpu(host, intersector, {scene.render.samples, options.time_limit_s}, film,
+        outcome = render_cpu(host, intersector, {int(range.end), options.time_limit_s, scene.render.noise}, film,
                              [&](double f) { progress.update(f); });
     }
+    keeper.stop();
     if (film.total_samples() == 0) throw Interrupted();
 
     Image image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, image);
     image.attributes.merge(picture_attributes(options, scene, host, white));
-    write_exr(options.output, image);
+    if (options.samples_of) add_part(fingerprint, range, scene.render.samples, film, image);
     Image display = developed(image, scene.film, scene.film, options.output.string());
-    write_png(options.png(), display);
+    try {
+        write_exr(options.output, image);
+        write_png(options.png(), display);
+    } catch (const std::exception& error) {
+        keeper.rescue(error);
+    }
+    keeper.remove_or_keep(outcome.interrupted);
     if (!options.stats_file.empty())
-        write_report(options.stats_file, render_report(scene, host, outcome, film, loading_s, threads));
+        write_report(options.stats_file, render_report(scene, host, outcome, film, keeper, loading_s, threads));
     print_summary(options, scene, outcome, film);
     return {std::move(display), outcome.interrupted};
 }

@@ -17,22 +17,23 @@ constexpr const char* footer = R"(Lengths are mm, wavelengths vacuum nm, angles 
 
 Writes OUT.exr (linear sRGB: R, G, B, the variance of each mean, samples per pixel; the resolved scene and the recipe in
 the header) and OUT.png beside it, developed as [film] says (opal-render develop makes it anew). Ctrl-C writes what is
-there. A scene with an [animation] gives OUT.0001.exr, OUT.0002.exr ... and OUT.sheet.png, all frames small on one sheet.
+there. Until the picture is there, OUT.checkpoint keeps the render's state: whatever ends the render, the same command
+with --resume goes on from it. A scene with an [animation] gives OUT.0001.exr, OUT.0002.exr ... and OUT.sheet.png, all frames small on one sheet.
 
 Examples:
   opal-render examples/precious_opal/scene.toml -o out/precious_opal.exr
   opal-render scene.toml -o draft.exr --spp 16 --set render.width=480 --set render.height=360
   opal-render scene.toml -o lit_from_the_right.exr --set environment.rotate_deg=60 --time 60s)";
 
-/// "60", "60s", "5m", "2h" -> seconds.
-double parse_duration(const std::string& text) {
+/// "60", "60s", "5m", "2h" -> seconds; nothing -> 0.
+double parse_duration(const std::string& flag, const std::string& text) {
     if (text.empty()) return 0.0;
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     const std::string unit = end;
     const double scale = unit.empty() || unit == "s" ? 1.0 : (unit == "m" ? 60.0 : (unit == "h" ? 3600.0 : 0.0));
     if (!(value > 0.0) || !std::isfinite(value) || scale == 0.0)
-        throw InputError(fmt::format("--time {}: expected a positive number of seconds, or with a unit: 90s, 5m, 2h", text));
+        throw InputError(fmt::format("{} {}: expected a positive number of seconds, or with a unit: 90s, 5m, 2h", flag, text));
     return value * scale;
 }
 
@@ -48,6 +49,7 @@ std::string RenderOptions::command() const {
     for (const std::string& assignment : overrides) text += " --set " + assignment;
     if (samples > 0) text += fmt::format(" --spp {}", samples);
     if (!time.empty()) text += " --time " + time;
+    if (noise) text += fmt::format(" --noise {}", *noise);
     if (!crop.empty()) text += " --crop " + crop;
     if (!frames.empty()) text += " --frame " + frames;
     if (seed) text += fmt::format(" --seed {}", *seed);
@@ -74,10 +76,25 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
     std::string tev;
     CLI::Option* const tev_option =
         app.add_option("--tev", tev, "show the picture while it is made in the viewer tev: host, host:port (default port 14158)");
+    app.add_option("--noise", options.noise,
+                   "stop where luminance and chroma have this relative error, instead of render.noise; 0: nowhere")
+        ->check(CLI::Range(0.0, 1.0));
+    std::string samples_of, interval = "60s";
+    app.add_option("--samples", samples_of, "draw samples A:B (A <= i < B) of each pixel alone: a part for opal-render merge");
+    app.add_option("--checkpoint", interval, "keep the render's state in OUT.checkpoint every so often: 60s, 5m or off")
+        ->capture_default_str();
+    app.add_flag("--resume", options.checkpoint.resume, "go on from OUT.checkpoint: the result is that of an unbroken render");
+    app.add_flag("--keep-checkpoint", options.checkpoint.keep, "keep OUT.checkpoint of a finished render, to add samples later");
     app.add_option("--stats", options.stats_file, "write statistics as JSON");
     if (const std::optional<int> code = parse_command_line(app, argc, argv)) return code;
     if (*tev_option) options.tev = parse_tev_address(tev);
-    options.time_limit_s = parse_duration(options.time);
+    options.time_limit_s = parse_duration("--time", options.time);
+    options.checkpoint.interval_s = interval == "off" ? 0.0 : parse_duration("--checkpoint", interval);
+    if (!samples_of.empty()) {
+        const std::vector<SampleRange> ranges = parse_sample_ranges(samples_of, "--samples");
+        if (ranges.size() > 1) throw InputError(fmt::format("--samples {}: expected one range A:B", samples_of));
+        options.samples_of = ranges.front();
+    }
     if (options.device == "cuda") throw InputError("--device cuda: this build has no CUDA backend; allowed: auto, cpu");
     if (options.output.extension() != ".exr")
         throw InputError(fmt::format("output {}: the name must end in .exr", options.output.string()));
@@ -94,6 +111,14 @@ SceneDescription read_scene(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene_file, overrides);
     if (options.samples > 0) scene.render.samples = options.samples;
     if (options.seed) scene.render.seed = std::uint64_t(*options.seed);
+    if (options.noise) scene.render.noise = *options.noise;
+    if (options.samples_of && scene.render.noise > 0.0)
+        throw InputError(
+            "--samples: how many samples a place needs for --noise (render.noise) is known from all of them alone; a part needs "
+            "0");
+    if (options.samples_of && int(options.samples_of->end) > scene.render.samples)
+        throw InputError(fmt::format("--samples {}:{}: the render has {} samples per pixel (render.samples, --spp)",
+                                     options.samples_of->first, options.samples_of->end, scene.render.samples));
     return scene;
 }
 
