@@ -11,13 +11,10 @@
 #include "renderer/host/render_fingerprint.h"
 
 namespace opal {
-namespace {
 
 std::filesystem::path checkpoint_path(std::filesystem::path output) {
     return output.replace_extension(".checkpoint");
 }
-
-}  // namespace
 
 CheckpointKeeper::CheckpointKeeper(const CheckpointOptions& options, const std::filesystem::path& output, std::string fingerprint,
                                    Film& film)

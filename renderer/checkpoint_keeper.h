@@ -13,6 +13,9 @@
 
 namespace opal {
 
+/// Where the checkpoint of a picture lies.
+std::filesystem::path checkpoint_path(std::filesystem::path output);
+
 /// What became of a render's checkpoints, for the report.
 struct CheckpointCounts {
     int written = 0, failed = 0;

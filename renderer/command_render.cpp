@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <memory>
+
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -14,6 +16,8 @@
 #include "renderer/host/development.h"
 #include "renderer/host/film_noise.h"
 #include "renderer/host/film_parts.h"
+#include "renderer/host/film_preview.h"
+#include "renderer/host/live_view.h"
 #include "renderer/host/render_fingerprint.h"
 #include "renderer/render_animation.h"
 #include "renderer/render_command.h"
@@ -42,6 +46,29 @@ void add_part(const std::string& fingerprint, const SampleRange& range, int all_
     image.attributes[all_samples_attribute] = std::to_string(all_samples);
     image.attributes[fingerprint_attribute] = fingerprint;
     add_exact_sums(film, image);
+}
+
+/// What a later run needs to know a frame of an animation as done.
+void mark_frame(const std::string& fingerprint, bool interrupted, Image& image) {
+    image.attributes[fingerprint_attribute] = fingerprint;
+    image.attributes[finished_attribute] = interrupted ? "no" : "yes";
+}
+
+/// The viewer's window, where one is wanted and answers.
+std::unique_ptr<LiveView> live_view(const RenderOptions& options, const Film& film) {
+    if (!options.tev) return nullptr;
+    auto view = std::make_unique<LiveView>(*options.tev, options.output.filename().string(), [&] { return film_preview(film); });
+    if (!view->connected())
+        fmt::print(stderr, "opal-render: note: no viewer answers at {}:{}; rendering without\n", options.tev->host,
+                   options.tev->port);
+    return view;
+}
+
+/// "noise 0.031, 121000 paths/s"
+std::string progress_note(const RenderProgress& progress, const Film& film) {
+    const std::optional<PictureNoise> noise = picture_noise(film);
+    return fmt::format("{}{:.3g} paths/s", noise ? fmt::format("noise {:.2g}, ", noise->median.larger()) : "",
+                       progress.paths_per_second);
 }
 
 /// "256", or where places differ "48.3 (32 at least)".
@@ -88,12 +115,16 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     if (!options.stats_file.empty()) require_writable(options.stats_file);
     const int threads = int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 
-    const Stopwatch loading;
+    StageSeconds stages;
+    Stopwatch watch;
     std::vector<std::string> notices;
     const HostScene host(scene, notices);
+    stages.tables = host.tables_seconds();
+    stages.objects = watch.seconds() - stages.tables;
+    watch = {};
     const EmbreeScene intersector(host.meshes());
+    stages.rays = watch.seconds();
     for (const std::string& notice : notices) fmt::print(stderr, "opal-render: note: {}\n", notice);
-    const double loading_s = loading.seconds();
 
     const Xyz white = film_white(scene.film);
     const SampleRange range = options.samples_of.value_or(SampleRange{0, std::uint32_t(scene.render.samples)});
@@ -105,16 +136,20 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     keeper.start();
     RenderOutcome outcome;
     {
+        const std::unique_ptr<LiveView> live = live_view(options, film);
         Progress progress("rendering");
-        outcome = render_cpu(host, intersector, {int(range.end), options.time_limit_s, scene.render.noise}, film,
-                             [&](double f) { progress.update(f); });
+        outcome =
+            render_cpu(host, intersector, {int(range.end), options.time_limit_s, scene.render.noise}, film,
+                       [&](const RenderProgress& p) { progress.update(p.fraction, [&] { return progress_note(p, film); }); });
     }
     keeper.stop();
     if (film.total_samples() == 0) throw Interrupted();
 
+    watch = {};
     Image image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, image);
     image.attributes.merge(picture_attributes(options, scene, host, white));
+    if (!options.frames.empty()) mark_frame(fingerprint, outcome.interrupted, image);
     if (options.samples_of) add_part(fingerprint, range, scene.render.samples, film, image);
     Image display = developed(image, scene.film, scene.film, options.output.string());
     try {
@@ -124,8 +159,9 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
         keeper.rescue(error);
     }
     keeper.remove_or_keep(outcome.interrupted);
+    stages.writing = watch.seconds();
     if (!options.stats_file.empty())
-        write_report(options.stats_file, render_report(scene, host, outcome, film, keeper, loading_s, threads));
+        write_report(options.stats_file, render_report(scene, host, outcome, film, keeper, stages, threads));
     print_summary(options, scene, outcome, film);
     return {std::move(display), outcome.interrupted};
 }

@@ -73,7 +73,7 @@ std::uint32_t pass_size(std::uint32_t done, std::uint32_t new_samples, double el
 class RenderRun {
   public:
     RenderRun(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-              const std::function<void(double)>& progress)
+              const std::function<void(const RenderProgress&)>& progress)
         : scene_(scene),
           intersector_(intersector),
           limits_(limits),
@@ -138,7 +138,8 @@ class RenderRun {
             for (int b = range.begin(); b != range.end() && !interrupt_requested(); ++b) {
                 advance(b, target);
                 const double by_time = limits_.time_s > 0.0 ? watch_.seconds() / limits_.time_s : 0.0;
-                progress_(std::min(1.0, std::max(double(work_done_) / double(total_work_), by_time)));
+                progress_({std::min(1.0, std::max(double(work_done_) / double(total_work_), by_time)),
+                           double(new_paths_) / std::max(1.0e-3, watch_.seconds())});
             }
         });
     }
@@ -163,11 +164,14 @@ class RenderRun {
         FilmBlock& block = film_.block(index);
         const std::scoped_lock lock(block.lock);
         const std::int64_t work_before = work_left(block);
+        const std::uint32_t samples_before = block.end_sample;
         while (!block.settled && block.end_sample < target) {
             const std::uint32_t first = film_.first_sample(), look = first + next_noise_look(block.end_sample - first);
             trace_(scene_, intersector_, film_.block_window(index), std::min(target, look), film_, block);
             if (block.end_sample == look && film_.noise_floor() >= 0.0) look_at_noise(film_, index, limits_.noise);
         }
+        const PixelWindow window = film_.block_window(index);
+        new_paths_ += std::int64_t(block.end_sample - samples_before) * window.width() * window.height();
         work_done_ += work_before - work_left(block);
     }
 
@@ -175,18 +179,19 @@ class RenderRun {
     const EmbreeScene& intersector_;
     const RenderLimits limits_;
     Film& film_;
-    const std::function<void(double)>& progress_;
+    const std::function<void(const RenderProgress&)>& progress_;
     const BlockTracer trace_;
     const bool groups_whole_;
     const Stopwatch watch_;
     std::int64_t total_work_ = 0;
     std::atomic<std::int64_t> work_done_ = 0;
+    std::atomic<std::int64_t> new_paths_ = 0;
 };
 
 }  // namespace
 
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(double)>& progress) {
+                         const std::function<void(const RenderProgress&)>& progress) {
     return RenderRun(scene, intersector, limits, film, progress).run();
 }
 

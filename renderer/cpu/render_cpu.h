@@ -26,10 +26,16 @@ struct RenderOutcome {
     int finished_samples = 0;  ///< that every pixel has
 };
 
+/// How far a render has come, and how fast.
+struct RenderProgress {
+    double fraction = 0.0;  ///< done of what was left to do
+    double paths_per_second = 0.0;
+};
+
 /// Renders a scene on all CPU cores, going on from what the film holds: TBB over the film's blocks, pass after pass, so that
 /// whatever ends it leaves a whole picture. The film's content depends on the scene and the limits alone, not on threads, passes
-/// or interruptions. `progress` gets the fraction done of what was left to do.
+/// or interruptions. `progress` is called from all threads.
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(double)>& progress);
+                         const std::function<void(const RenderProgress&)>& progress);
 
 }  // namespace opal

@@ -51,6 +51,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
                                      description.render.sampler == SamplerKind::independent})),
       environment_(make_environment(description.environment, description.color.upsampling)) {
+    tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
         materials_.push_back({MaterialModel::diffuse,
                               upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),

@@ -103,7 +103,7 @@ Rendered render_text(const std::string& scene_toml, int samples) {
     const EmbreeScene intersector(host.meshes());
     Film film(scene.render.window(), scene.render.width, scene.render.height, scene.film.spectral, film_white(scene.film));
     Rendered rendered;
-    rendered.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](double) {});
+    rendered.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {});
     rendered.image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, rendered.image);
     return rendered;
