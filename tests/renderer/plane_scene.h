@@ -31,7 +31,7 @@ class PlaneScene {
                                       description.film.spectral, film_white(description.film), first_sample);
     }
     RenderOutcome render(Film& film, int samples, double noise = 0.0) const {
-        return render_cpu(host, intersector, {samples, 0.0, noise}, film, [](double) {});
+        return render_cpu(host, intersector, {samples, 0.0, noise}, film, [](const RenderProgress&) {});
     }
 
   private:
