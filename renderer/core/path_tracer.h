@@ -99,7 +99,7 @@ class PathTracer {
                         ++counters_.not_a_number;
                         return;
                     }
-                    ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
+                    ray = {event.position, event.direction};
                     connected_ = false;
                     // Going back and forth between two beams is one event, however many turns it takes.
                     if (!event.turned_back) ++bounce;

@@ -41,6 +41,7 @@ struct OpalView {
     const float* surface_index = nullptr;      ///< 1 nm table: effective index where light refracts
     bool surface_disperses = false;            ///< surface_index varies
     PlanePair pairs[max_tested_pairs];
+    PlaneFamilies families;  ///< of the pairs
     int num_pairs = 0;
     float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
     float fault = 0.0f;             ///< probability of a stacking fault per layer
