@@ -87,6 +87,8 @@ struct OpalDescription {
         Dispersion::full;  ///< full: bands and refraction; bands: diffraction alone; none: indices at 589.3 nm
     MajorantKind majorants = MajorantKind::local;
     int companions = 3;  ///< wavelengths that travel with the hero, 0 to 7
+
+    bool operator==(const OpalDescription&) const = default;
 };
 
 struct MaterialDescription {
@@ -109,6 +111,8 @@ struct ObjectDescription {
     double size_mm = 2000.0;  ///< plane: edge of the square
     int priority = 0;         ///< opal: where bodies overlap the one of higher priority is there; of equal ones the later
     std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
+
+    bool operator==(const ObjectDescription&) const = default;
 };
 
 /// How colours of the scene become spectra.

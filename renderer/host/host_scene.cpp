@@ -47,7 +47,7 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
     return camera;
 }
 
-HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
+HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
     : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
                                      description.render.sampler == SamplerKind::independent})),
       environment_(make_environment(description.environment, description.color.upsampling)) {
@@ -56,9 +56,10 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
         materials_.push_back({MaterialModel::diffuse,
                               upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),
                                                                          float(material.albedo[2])})});
+    OpalCache own;
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
-            add_opal(object, description.opal, notices);
+            add_opal(object, (opals ? *opals : own).find(object, description.opal, notices));
         else
             add_mesh(object, description.materials);
     }
@@ -80,10 +81,12 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.filter = pixel_filter(render);
 }
 
-void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
-    opals_.push_back(std::make_unique<OpalBody>(object, settings, notices));
-    meshes_.push_back(opals_.back()->take_surface());
-    add_body(opals_.back()->view(), object.priority);
+void HostScene::add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal) {
+    const RigidTransform transform = object_transform(object);
+    meshes_.push_back(opal->surface());
+    transform_mesh(meshes_.back(), transform);
+    add_body(opal->placed(transform), object.priority);
+    opals_.push_back(std::move(opal));
 }
 
 /// The last mesh bounds it.

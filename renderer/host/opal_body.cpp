@@ -85,10 +85,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.diffraction = transport_model(settings.diffraction);
     opal.ewald_tolerance = float(settings.ewald_tolerance);
     opal.max_odds = float(settings.max_odds);
-    opal.world_from_object = object_transform(object);
-
     surface_ = surface_from_level_set(*asset.shape, file);
-    transform_mesh(surface_, opal.world_from_object);
 
     grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
     opal.grains = grains_->field();
@@ -118,7 +115,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
     opal.grain_size_mm = grain_size_mm_.data();
 
-    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(opal.world_from_object.scale), file);
+    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(float(object.scale)), file);
     medium_fields_->attach(opal.medium);
     const double sigma_a_scale = medium_fields_->constant(MediumField::sigma_a_scale);
     const double sigma_s_mie_per_mm = medium_fields_->constant(MediumField::sigma_s_mie);
