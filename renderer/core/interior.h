@@ -105,7 +105,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
         const float scale = opal.world_from_object.scale;
         const Vec3 direction = opal.world_from_object.local_from_world_direction(ray.direction);
-        GrainWalk walk(opal.grains, opal.world_from_object.local_from_world_point(ray.origin), direction);
+        GrainPath walk(opal.grains, opal.world_from_object.local_from_world_point(ray.origin), direction, visit.cell);
         float reached = 0.0f;  // object mm, like everything on the walk
         float entered_mm = 0.0f;
         if (visit.grain == 0) visit.enter(walk.next_grain(0, reached, surface.distance_mm() / scale));
@@ -128,6 +128,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             }
             const float surface_mm = turn_mm > clear_mm ? surface.distance_mm() : 3.0e38f;
             const int next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
+            visit.cell = walk.cell();
             const float leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);
             const float end_mm = min_of(min_of(turn_mm, leaves_mm), surface_mm);
             const float passed_mm = flight.advance(end_mm, weights);

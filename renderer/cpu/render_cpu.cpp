@@ -132,10 +132,11 @@ void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std:
                     float grain = 0.0f;
                     if (found && surface.material < 0) {
                         const RigidTransform& transform = view.opal.world_from_object;
-                        GrainWalk walk(view.opal.grains, transform.local_from_world_point(surface.position),
+                        GrainPath walk(view.opal.grains, transform.local_from_world_point(surface.position),
                                        transform.local_from_world_direction(-surface.geometric_normal));
                         float distance = 0.0f;
-                        grain = float(walk.next_grain(0, distance, 3.0f / view.opal.grains.voxels_per_mm));
+                        // Cells begin at once; with voxels some may be cut by the surface.
+                        grain = float(walk.next_grain(0, distance, 3.0f / view.opal.grains.voxels.voxels_per_mm));
                     }
                     *target++ = grain;
                 }

@@ -133,9 +133,8 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     const OpalAsset asset = read_opal_asset(object.file, options, file_notices);
     const std::string file = object.file.string();
     for (const std::string& notice : file_notices) notices.push_back(file + ": " + notice);
-    if (!asset.grain_id)
-        throw InputError(file +
-                         ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
+    if (!asset.shape)
+        throw InputError(file + ": holds sites alone, no shape; build it with [output] grids = [\"shape\", \"sites\"]");
 
     OpalView& opal = view_.opal;
     opal.present = true;
@@ -147,8 +146,9 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     meshes_.push_back(surface_from_level_set(*asset.shape, file));
     transform_mesh(meshes_.back(), opal.world_from_object);
 
-    grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
-    opal.grains = grains_->field();
+    grains_ = std::make_unique<GrainSource>(asset, settings.grains, file);
+    opal.grains = grains_->view();
+    opal.grain_size_mm = grains_->sizes_mm().data();
     shape_ = std::make_unique<FieldGridData>(*asset.shape);
     opal.shape = shape_->view();
     for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
@@ -168,8 +168,6 @@ void HostScene::add_opal(const ObjectDescription& object, const OpalDescription&
     opal.layer_nm = float(stacked_layer_nm(constants.sphere_diameter_nm));
     if (constants.mosaic_spread_deg > 0.0)
         opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
-    grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
-    opal.grain_size_mm = grain_size_mm_.data();
 
     medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(opal.world_from_object.scale), file);
     medium_fields_->attach(opal.medium);

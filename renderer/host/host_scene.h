@@ -9,7 +9,7 @@
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
 #include "renderer/host/field_grid.h"
-#include "renderer/host/grain_grid.h"
+#include "renderer/host/grain_source.h"
 #include "renderer/host/medium_fields.h"
 #include "renderer/host/mesh_data.h"
 #include "renderer/host/phase_function.h"
@@ -38,6 +38,8 @@ class HostScene {
     /// Reciprocal-lattice points inside the limiting sphere, the origin counted; 0 without an opal.
     int reciprocal_points() const { return reciprocal_points_; }
     std::size_t num_grains() const { return orientations_.size(); }
+    /// Null without an opal.
+    const GrainSource* grains() const { return grains_.get(); }
     /// The recipe that the opal's file carries; empty for files made elsewhere.
     const std::string& recipe_toml() const { return recipe_toml_; }
 
@@ -50,9 +52,8 @@ class HostScene {
     std::vector<DiffuseMaterial> materials_;
     std::vector<MeshData> meshes_;
     std::vector<MeshView> mesh_views_;
-    std::unique_ptr<GrainGridData> grains_;
+    std::unique_ptr<GrainSource> grains_;
     std::vector<Quaternion> orientations_;
-    std::vector<float> grain_size_mm_;
     OpticalTables optics_;
     std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
     std::unique_ptr<FieldGridData> shape_;
