@@ -20,10 +20,10 @@ namespace opal {
 ///
 /// Single precision. h errs by some roundings of the coordinates times |s|, and `tolerance` is a few times that. A neighbour that
 /// is ahead by more than it takes over at once: a cell that was wrong by a hair, or altogether, is left for the right one. Such a
-/// step lowers delta at the place where it is made, so there is an end to them. One that is ahead by less and gaining, or about to be, takes
-/// over where h falls through -tolerance; all others where h falls through 0. These steps raise the distance, through roots that
-/// depend on the two sites alone, so there is an end to them too: the walk cannot go round in circles. Where neighbours tie (a
-/// ray along a boundary) the present cell is kept.
+/// step lowers delta at the place where it is made, so there is an end to them. One that is ahead by less and gaining, or about
+/// to be, takes over where h falls through -tolerance; all others where h falls through 0. These steps raise the distance,
+/// through roots that depend on the two sites alone, so there is an end to them too: the walk cannot go round in circles. Where
+/// neighbours tie (a ray along a boundary) the present cell is kept.
 class CellWalk {
   public:
     /// `origin`, `direction` (unit length) in object space (mm). `cell`: one that holds the origin, or nearly; below 0: not
@@ -63,6 +63,7 @@ class CellWalk {
     /// What one cell and the ray have in common.
     struct Passage {
         CellSite site;
+        Vec3 direction;    ///< of the ray
         Vec3 offset;       ///< e
         float offset2;     ///< |e|^2
         float offset_mm;   ///< |e|
@@ -71,16 +72,17 @@ class CellWalk {
         float r_mm;        ///< there
         float climb;       ///< dr/dtau there
         float present_mm;  ///< distance of the present place along the ray
+        float rounding_mm;
     };
 
     /// Where the ray leaves the cell towards a neighbour; 3e38 where it does not. Free of branches.
-    OPAL_HD float exit_towards(const Passage& at, const CellSite& neighbor) const {
-        const float sx = at.site.x - neighbor.x, sy = at.site.y - neighbor.y, sz = at.site.z - neighbor.z;
-        const float lead = neighbor.weight_mm - at.site.weight_mm;
-        const float tolerance = field_.rounding_mm * (fabsf(sx) + fabsf(sy) + fabsf(sz));
-        const float a = direction_.x * sx + direction_.y * sy + direction_.z * sz;
-        const float exact_gamma = at.offset.x * sx + at.offset.y * sy + at.offset.z * sz +
-                                  0.5f * (sx * sx + sy * sy + sz * sz - lead * lead);
+    OPAL_HD static float exit_towards(const Passage& at, float x, float y, float z, float weight_mm) {
+        const float sx = at.site.x - x, sy = at.site.y - y, sz = at.site.z - z;
+        const float lead = weight_mm - at.site.weight_mm;
+        const float tolerance = at.rounding_mm * (fabsf(sx) + fabsf(sy) + fabsf(sz));
+        const float a = at.direction.x * sx + at.direction.y * sy + at.direction.z * sz;
+        const float exact_gamma =
+            at.offset.x * sx + at.offset.y * sy + at.offset.z * sz + 0.5f * (sx * sx + sy * sy + sz * sz - lead * lead);
         const float h = a * at.tau_mm + exact_gamma - lead * at.r_mm;
         const bool sinks = a < lead * at.climb;
         const bool passed = h < (sinks ? -0.75f * tolerance : -tolerance);
@@ -91,12 +93,12 @@ class CellWalk {
         const float ds = lead * sqrtf(s2 > 0.0f ? s2 : 0.0f);
         const float ag = a * gamma;
         // The form of the root whose sum does not cancel.
-        const bool same_sign = (ag >= 0.0f) == (ds >= 0.0f);
+        const bool same_sign = ag * ds >= 0.0f;
         const float numerator = same_sign ? ag + ds : (gamma - lead * at.offset_mm) * (gamma + lead * at.offset_mm);
         const float denominator = same_sign ? p : ag - ds;
         const float root_mm = at.foot_mm - numerator / denominator;
-        const bool on_sheet = p > 0.0f ? a < 0.0f : gamma * lead > 0.0f;
-        const bool leaves = on_sheet & (s2 >= 0.0f) & (root_mm > at.present_mm);
+        const float sheet = p > 0.0f ? -a : gamma * lead;
+        const bool leaves = (sheet > 0.0f) & (s2 >= 0.0f) & (root_mm > at.present_mm);
         const float exit_mm = leaves ? root_mm : 3.0e38f;
         return passed ? at.present_mm : exit_mm;
     }
@@ -104,6 +106,7 @@ class CellWalk {
     OPAL_HD void find_exit(float distance) {
         Passage at;
         at.site = field_.sites[cell_];
+        at.direction = direction_;
         at.present_mm = distance;
         const Vec3 to_site = at.site.position() - origin_;
         at.foot_mm = dot(to_site, direction_);
@@ -113,21 +116,35 @@ class CellWalk {
         at.tau_mm = distance - at.foot_mm;
         at.r_mm = sqrtf(at.tau_mm * at.tau_mm + at.offset2);
         at.climb = at.r_mm > 0.0f ? at.tau_mm / at.r_mm : 0.0f;
+        at.rounding_mm = field_.rounding_mm;
 
         // Blocks run on into the next site's neighbours: to ask about more sites than needed does no harm.
+        const CellSite* sites = field_.sites;
         const uint32_t begin = field_.first[cell_], end = field_.first[cell_ + 1];
-        exit_mm_ = 3.0e38f;
+        float exit_mm = 3.0e38f;
+        int next_cell = cell_;
         for (uint32_t block = begin; block < end; block += OPAL_CELL_LANES) {
             const int32_t* neighbors = field_.neighbors + block;
+            float x[OPAL_CELL_LANES], y[OPAL_CELL_LANES], z[OPAL_CELL_LANES], weight_mm[OPAL_CELL_LANES];
+            for (int lane = 0; lane < OPAL_CELL_LANES; ++lane) {
+                const CellSite site = sites[neighbors[lane]];
+                x[lane] = site.x;
+                y[lane] = site.y;
+                z[lane] = site.z;
+                weight_mm[lane] = site.weight_mm;
+            }
             float exits_mm[OPAL_CELL_LANES];
             OPAL_SIMD
-            for (int lane = 0; lane < OPAL_CELL_LANES; ++lane) exits_mm[lane] = exit_towards(at, field_.sites[neighbors[lane]]);
             for (int lane = 0; lane < OPAL_CELL_LANES; ++lane)
-                if (exits_mm[lane] < exit_mm_) {
-                    exit_mm_ = exits_mm[lane];
-                    next_cell_ = neighbors[lane];
-                }
+                exits_mm[lane] = exit_towards(at, x[lane], y[lane], z[lane], weight_mm[lane]);
+            for (int lane = 0; lane < OPAL_CELL_LANES; ++lane) {
+                const bool sooner = exits_mm[lane] < exit_mm;
+                exit_mm = sooner ? exits_mm[lane] : exit_mm;
+                next_cell = sooner ? neighbors[lane] : next_cell;
+            }
         }
+        exit_mm_ = exit_mm;
+        next_cell_ = next_cell;
         exit_known_ = true;
     }
 

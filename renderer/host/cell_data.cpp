@@ -53,9 +53,10 @@ void CellData::keep_visible(const openvdb::BBoxd& box_mm) {
     std::vector<char> hidden(sites_.size(), 0);
     {
         const SiteTree tree(sites_);
-        const CellNeighborSearch search(sites_, tree, box_mm);
-        tbb::parallel_for(std::size_t(0), sites_.size(),
-                          [&](std::size_t n) { hidden[n] = search.is_hidden(std::uint32_t(n)) ? 1 : 0; });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites_.size(), sites_per_task), [&](const auto& range) {
+            CellNeighborSearch search(sites_, tree, box_mm);
+            for (std::size_t n = range.begin(); n < range.end(); ++n) hidden[n] = search.is_hidden(std::uint32_t(n)) ? 1 : 0;
+        });
     }
     std::size_t kept = 0;
     for (std::size_t n = 0; n < sites_.size(); ++n) {

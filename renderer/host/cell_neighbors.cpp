@@ -22,20 +22,48 @@ openvdb::Vec3d direction_of(int face, double u, double v) {
     return direction;
 }
 
+/// A square of a cube's face, seen from the cube's middle.
 struct PatchGeometry {
-    openvdb::Vec3d centre;  ///< unit direction
-    double reach;           ///< no direction of the patch is farther from the centre (chord)
+    double x, y, z;  ///< unit direction of its centre
+    double reach;    ///< no direction of the patch is farther from it (chord): a cap that holds the corners holds all of it
 
-    /// Square (u, v) of `edge` x `edge` on a face. Projecting on the unit sphere shrinks distances at least by the distance of
-    /// the nearest place from the middle.
     PatchGeometry(int face, int edge, int u, int v) {
         const double half = 1.0 / edge;
         const double u_mid = (2 * u + 1) * half - 1.0, v_mid = (2 * v + 1) * half - 1.0;
-        centre = direction_of(face, u_mid, v_mid).unit();
-        const double u_min = std::max(0.0, std::abs(u_mid) - half), v_min = std::max(0.0, std::abs(v_mid) - half);
-        reach = std::sqrt(2.0) * half / std::sqrt(1.0 + u_min * u_min + v_min * v_min);
+        const openvdb::Vec3d centre = direction_of(face, u_mid, v_mid).unit();
+        double reach2 = 0.0;
+        for (const double u_side : {u_mid - half, u_mid + half})
+            for (const double v_side : {v_mid - half, v_mid + half})
+                reach2 = std::max(reach2, (direction_of(face, u_side, v_side).unit() - centre).lengthSqr());
+        x = centre.x();
+        y = centre.y();
+        z = centre.z();
+        reach = std::sqrt(reach2);
     }
 };
+
+constexpr int tabulated_levels = 4;
+
+/// The patches of the first levels, one level after another.
+const std::vector<PatchGeometry>& patch_table() {
+    static const std::vector<PatchGeometry> table = [] {
+        std::vector<PatchGeometry> patches;
+        for (int level = 0; level < tabulated_levels; ++level) {
+            const int edge = CellNeighborSearch::coarse_edge << level;
+            for (int square = 0; square < 6 * edge * edge; ++square)
+                patches.emplace_back(square / (edge * edge), edge, square / edge % edge, square % edge);
+        }
+        return patches;
+    }();
+    return table;
+}
+
+PatchGeometry patch_geometry(int face, int level, int u, int v) {
+    const int edge = CellNeighborSearch::coarse_edge << level;
+    if (level >= tabulated_levels) return PatchGeometry(face, edge, u, v);
+    const int before = CellNeighborSearch::coarse_patches * ((1 << 2 * level) - 1) / 3;
+    return patch_table()[std::size_t(before + (face * edge + u) * edge + v)];
+}
 
 openvdb::Vec3d place_of(const CellSite& site) {
     return {double(site.x), double(site.y), double(site.z)};
@@ -46,22 +74,21 @@ openvdb::Vec3d place_of(const CellSite& site) {
 CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const openvdb::BBoxd& box_mm)
     : sites_(sites), tree_(tree), box_mm_(box_mm) {
     for (int patch = 0; patch < coarse_patches; ++patch) {
-        const PatchGeometry geometry(patch / (coarse_edge * coarse_edge), coarse_edge, patch / coarse_edge % coarse_edge,
-                                     patch % coarse_edge);
-        centre_x_[patch] = geometry.centre.x();
-        centre_y_[patch] = geometry.centre.y();
-        centre_z_[patch] = geometry.centre.z();
+        const PatchGeometry& geometry = patch_table()[std::size_t(patch)];
+        centre_x_[patch] = geometry.x;
+        centre_y_[patch] = geometry.y;
+        centre_z_[patch] = geometry.z;
         reach_[patch] = geometry.reach;
     }
 }
 
-bool CellNeighborSearch::is_hidden(std::uint32_t site) const {
+bool CellNeighborSearch::is_hidden(std::uint32_t site) {
     const openvdb::Vec3d place = place_of(sites_[site]);
     const double weight = sites_[site].weight_mm;
     bool hidden = false;
     // A little above 0 for the rounding of a box's gap; the test of each site is exact enough to be the same for all.
     const auto matters = [](double gap_mm) { return gap_mm <= 1.0e-9; };
-    tree_.nearest_first(place, weight, matters, [&](std::uint32_t first, std::uint32_t last) {
+    tree_.nearest_first(place, weight, pending_, matters, [&](std::uint32_t first, std::uint32_t last) {
         for (std::uint32_t other = first; other < last && !hidden; ++other) {
             if (other == site) continue;
             const double lead = double(sites_[other].weight_mm) - weight;
@@ -103,7 +130,7 @@ void CellNeighborSearch::gather(std::uint32_t site) {
     double lowest = 0.0;
     // kappa_j <= 2 / (|g| - D), and |g| - D is at least the gap.
     const auto matters = [&](double gap_mm) { return gap_mm * lowest * (1.0 - near_miss) <= 2.0; };
-    tree_.nearest_first(place, weight, matters, [&](std::uint32_t first, std::uint32_t last) {
+    tree_.nearest_first(place, weight, pending_, matters, [&](std::uint32_t first, std::uint32_t last) {
         for (std::uint32_t other = first; other < last; ++other) {
             if (other == site) continue;
             const openvdb::Vec3d offset = place_of(sites_[other]) - place;
@@ -134,8 +161,10 @@ void CellNeighborSearch::mark_winners() {
 
 /// Drops the rivals that cannot win in a patch; divides it where others than known neighbours are left.
 void CellNeighborSearch::settle(const Patch& patch, bool finest) {
-    const PatchGeometry geometry(patch.face, coarse_edge << patch.level, patch.u, patch.v);
-    const auto kappa = [&](const Rival& rival) { return geometry.centre.dot(rival.slope) + rival.constant; };
+    const PatchGeometry geometry = patch_geometry(patch.face, patch.level, patch.u, patch.v);
+    const auto kappa = [&](const Rival& rival) {
+        return geometry.x * rival.slope.x() + geometry.y * rival.slope.y() + geometry.z * rival.slope.z() + rival.constant;
+    };
     std::uint32_t winner = in_patch_[patch.first];
     double best = kappa(rivals_[winner]);
     for (std::uint32_t k = patch.first + 1; k < patch.last; ++k) {
@@ -166,13 +195,31 @@ void CellNeighborSearch::settle(const Patch& patch, bool finest) {
                                   std::uint32_t(in_finer_patch_.size())});
 }
 
-void CellNeighborSearch::refine() {
+void CellNeighborSearch::list_coarse_patches() {
+    may_win_.resize(rivals_.size() * coarse_patches);
+    for (std::size_t n = 0; n < rivals_.size(); ++n) {
+        const double x = rivals_[n].slope.x(), y = rivals_[n].slope.y(), z = rivals_[n].slope.z();
+        const double constant = rivals_[n].constant, steepness = rivals_[n].steepness;
+        std::uint8_t* may_win = may_win_.data() + n * coarse_patches;
+        OPAL_SIMD
+        for (int patch = 0; patch < coarse_patches; ++patch) {
+            const double kappa = centre_x_[patch] * x + centre_y_[patch] * y + centre_z_[patch] * z + constant;
+            may_win[patch] = kappa + reach_[patch] * steepness >= (1.0 - near_miss) * lowest_[patch] ? 1 : 0;
+        }
+    }
     in_patch_.clear();
     patches_.clear();
-    for (std::uint32_t n = 0; n < rivals_.size(); ++n) in_patch_.push_back(n);
-    for (int patch = 0; patch < coarse_patches; ++patch)
-        patches_.push_back({patch / (coarse_edge * coarse_edge), 0, patch / coarse_edge % coarse_edge, patch % coarse_edge, 0,
-                            std::uint32_t(rivals_.size())});
+    for (int patch = 0; patch < coarse_patches; ++patch) {
+        const auto first = std::uint32_t(in_patch_.size());
+        for (std::uint32_t n = 0; n < rivals_.size(); ++n)
+            if (may_win_[n * coarse_patches + std::size_t(patch)] != 0) in_patch_.push_back(n);
+        patches_.push_back({patch / (coarse_edge * coarse_edge), 0, patch / coarse_edge % coarse_edge, patch % coarse_edge, first,
+                            std::uint32_t(in_patch_.size())});
+    }
+}
+
+void CellNeighborSearch::refine() {
+    list_coarse_patches();
     while (!patches_.empty()) {
         in_finer_patch_.clear();
         finer_patches_.clear();

@@ -20,15 +20,19 @@ namespace opal {
 /// beyond twice the largest radius found so far need no look: kappa_j <= 2 / (|g| - D).
 ///
 /// The result holds every neighbour. Beside them it holds only sites that come within a part in 10^5 of kappa of being one, or
-/// within what the smallest patches (about 0.005 rad) resolve: what a walk in single precision could mistake for neighbours is
+/// within what the smallest patches (about 0.01 rad) resolve: what a walk in single precision could mistake for neighbours is
 /// not missing either.
 class CellNeighborSearch {
   public:
+    /// The coarsest patches are squares of a cube's faces, so many along an edge.
+    static constexpr int coarse_edge = 4;
+    static constexpr int coarse_patches = 6 * coarse_edge * coarse_edge;
+
     /// Keeps both by reference. All sites lie inside the box.
     CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const openvdb::BBoxd& box_mm);
 
     /// Whether another site is at least as near as `site` everywhere; of equal sites in one place the first is not hidden.
-    bool is_hidden(std::uint32_t site) const;
+    bool is_hidden(std::uint32_t site);
 
     /// The candidates for neighbours of `site`, ascending. No site may be hidden.
     void find(std::uint32_t site, std::vector<std::int32_t>& neighbors);
@@ -47,13 +51,12 @@ class CellNeighborSearch {
         int u, v;                   ///< of 4 * 2^level squares along an edge
         std::uint32_t first, last;  ///< rivals that may win in it
     };
-    static constexpr int coarse_edge = 4;
-    static constexpr int coarse_patches = 6 * coarse_edge * coarse_edge;
-    static constexpr int finest_level = 6;
+    static constexpr int finest_level = 5;
 
     void offer(const Rival& rival);
     void gather(std::uint32_t site);
     void mark_winners();
+    void list_coarse_patches();
     void refine();
     void settle(const Patch& patch, bool finest);
 
@@ -65,7 +68,9 @@ class CellNeighborSearch {
     double centre_x_[coarse_patches], centre_y_[coarse_patches], centre_z_[coarse_patches], reach_[coarse_patches];
     // For the present cell, in each coarse patch: a lower bound of the largest kappa; the largest at the centre and whose it is.
     double lowest_[coarse_patches], best_[coarse_patches], winner_[coarse_patches];
+    std::vector<SiteTree::Pending> pending_;
     std::vector<Rival> rivals_;
+    std::vector<std::uint8_t> may_win_;  ///< of each rival, in each coarse patch
     std::vector<char> is_neighbor_;
     std::vector<std::uint32_t> in_patch_, in_finer_patch_;
     std::vector<Patch> patches_, finer_patches_;

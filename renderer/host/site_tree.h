@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -17,32 +18,32 @@ class SiteTree {
     /// Keeps `sites` by reference; they must be in the order of `z_order`.
     explicit SiteTree(const std::vector<CellSite>& sites);
 
-    /// Calls visit(first, last) for ranges of at most `leaf_sites` sites, nearer boxes first, as long as `matters(gap_mm)` holds:
-    /// no site in a box has |p_j - p| - (w_j - w) below its gap.
+    /// A box yet to be looked into. No site in it has |p_j - p| - (w_j - w) below its gap.
+    struct Pending {
+        double gap_mm;
+        std::uint32_t node;
+        bool operator<(const Pending& other) const { return gap_mm > other.gap_mm; }  ///< the smallest gap on top of a heap
+    };
+
+    /// Calls visit(first, last) for ranges of at most `leaf_sites` sites, those of the smallest gap first, as long as
+    /// `matters(gap_mm)` holds and visit returns true. `pending` is working space.
     template <class Matters, class Visit>
-    void nearest_first(const openvdb::Vec3d& place_mm, double weight_mm, const Matters& matters, const Visit& visit) const {
-        if (nodes_.empty()) return;
-        struct Pending {
-            std::uint32_t node;
-            double gap_mm;
-        };
-        // Each level leaves one box behind; halving 2^32 sites takes 32 levels.
-        Pending stack[2 * 32];
-        int depth = 0;
-        stack[depth++] = {0, gap_mm(nodes_[0], place_mm, weight_mm)};
-        while (depth > 0) {
-            const Pending next = stack[--depth];
-            if (!matters(next.gap_mm)) continue;
-            const Node& node = nodes_[next.node];
+    void nearest_first(const openvdb::Vec3d& place_mm, double weight_mm, std::vector<Pending>& pending, const Matters& matters,
+                       const Visit& visit) const {
+        pending.clear();
+        if (!nodes_.empty()) pending.push_back({gap_mm(nodes_[0], place_mm, weight_mm), 0});
+        while (!pending.empty() && matters(pending.front().gap_mm)) {
+            const Node& node = nodes_[pending.front().node];
+            std::pop_heap(pending.begin(), pending.end());
+            pending.pop_back();
             if (node.child == 0) {
                 if (!visit(node.first, node.last)) return;
                 continue;
             }
-            const Pending left{node.child, gap_mm(nodes_[node.child], place_mm, weight_mm)};
-            const Pending right{node.child + 1, gap_mm(nodes_[node.child + 1], place_mm, weight_mm)};
-            const bool left_first = left.gap_mm <= right.gap_mm;
-            stack[depth++] = left_first ? right : left;
-            stack[depth++] = left_first ? left : right;
+            for (std::uint32_t child = node.child; child < node.child + 2; ++child) {
+                pending.push_back({gap_mm(nodes_[child], place_mm, weight_mm), child});
+                std::push_heap(pending.begin(), pending.end());
+            }
         }
     }
 
