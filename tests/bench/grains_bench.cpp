@@ -65,8 +65,9 @@ class GrainsBench {
         const double spacing_mm = 16.1 / std::cbrt(double(count));
         const double amplitude_mm =
             weights == "additive" ? 0.3 * spacing_mm : (weights == "nearly-equal" ? 1.0e-5 : (weights == "strong" ? 3.0 : 0.0));
-        std::string text =
-            fmt::format("[shape]\nkind = \"sphere\"\nsize_mm = 20\n[grains]\nnum_sites = {}\nvoxel_size_mm = 0.1\n", count);
+        std::string text = fmt::format(
+            "[shape]\nkind = \"sphere\"\nsize_mm = 20\n[grains]\nnum_sites = {}\nvoxel_size_mm = 0.1\nlimit_weights = false\n",
+            count);
         text += weights == "voronoi" ? "tessellation = \"voronoi\"\n"
                                      : fmt::format("weight = {{ kind = \"perlin\", amplitude = {}, scale_mm = {} }}\n",
                                                    amplitude_mm, 2.0 * spacing_mm);
@@ -84,7 +85,9 @@ class GrainsBench {
 
     void measure_sites(const std::string& weights, std::size_t count, const std::vector<int>& resolutions) {
         place_sites(weights, count);
-        const GrainsBenchRow row{weights, count};
+        GrainsBenchRow row;
+        row.weights = weights;
+        row.sites = count;
         const openvdb::BBoxd bounds(openvdb::Vec3d(-double(radius_mm)), openvdb::Vec3d(double(radius_mm)));
         const Stopwatch watch;
         const CellData cells(sites_, bounds);
