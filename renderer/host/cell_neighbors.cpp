@@ -75,10 +75,10 @@ CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const
     : sites_(sites), tree_(tree), box_mm_(box_mm) {
     for (int patch = 0; patch < coarse_patches; ++patch) {
         const PatchGeometry& geometry = patch_table()[std::size_t(patch)];
-        centre_x_[patch] = geometry.x;
-        centre_y_[patch] = geometry.y;
-        centre_z_[patch] = geometry.z;
-        reach_[patch] = geometry.reach;
+        centre_x_[patch] = float(geometry.x);
+        centre_y_[patch] = float(geometry.y);
+        centre_z_[patch] = float(geometry.z);
+        reach_[patch] = float(geometry.reach);
     }
 }
 
@@ -101,12 +101,12 @@ bool CellNeighborSearch::is_hidden(std::uint32_t site) {
 }
 
 void CellNeighborSearch::offer(const Rival& rival) {
-    const double x = rival.slope.x(), y = rival.slope.y(), z = rival.slope.z();
-    const double constant = rival.constant, steepness = rival.steepness, number = double(rivals_.size());
+    const auto x = float(rival.slope.x()), y = float(rival.slope.y()), z = float(rival.slope.z());
+    const auto constant = float(rival.constant), steepness = float(rival.steepness), number = float(rivals_.size());
     OPAL_SIMD
     for (int patch = 0; patch < coarse_patches; ++patch) {
-        const double kappa = centre_x_[patch] * x + centre_y_[patch] * y + centre_z_[patch] * z + constant;
-        const double lowest = kappa - reach_[patch] * steepness;
+        const float kappa = centre_x_[patch] * x + centre_y_[patch] * y + centre_z_[patch] * z + constant;
+        const float lowest = kappa - reach_[patch] * steepness;
         lowest_[patch] = lowest > lowest_[patch] ? lowest : lowest_[patch];
         winner_[patch] = kappa > best_[patch] ? number : winner_[patch];
         best_[patch] = kappa > best_[patch] ? kappa : best_[patch];
@@ -118,9 +118,9 @@ void CellNeighborSearch::gather(std::uint32_t site) {
     const openvdb::Vec3d place = place_of(sites_[site]);
     const double weight = sites_[site].weight_mm;
     rivals_.clear();
-    std::fill(std::begin(lowest_), std::end(lowest_), 0.0);
-    std::fill(std::begin(best_), std::end(best_), 0.0);
-    std::fill(std::begin(winner_), std::end(winner_), 0.0);
+    std::fill(std::begin(lowest_), std::end(lowest_), 0.0f);
+    std::fill(std::begin(best_), std::end(best_), 0.0f);
+    std::fill(std::begin(winner_), std::end(winner_), 0.0f);
     for (int face = 0; face < 6; ++face) {
         const int axis = face / 2;
         const double distance_mm = face % 2 == 0 ? box_mm_.max()[axis] - place[axis] : place[axis] - box_mm_.min()[axis];
@@ -139,7 +139,10 @@ void CellNeighborSearch::gather(std::uint32_t site) {
             const double scale = 2.0 / ((distance - lead) * (distance + lead));
             offer({scale * offset, scale * lead, scale * distance, std::int32_t(other)});
         }
-        lowest = *std::min_element(std::begin(lowest_), std::end(lowest_));
+        float least = lowest_[0];
+#pragma omp simd reduction(min : least)
+        for (int patch = 0; patch < coarse_patches; ++patch) least = lowest_[patch] < least ? lowest_[patch] : least;
+        lowest = least;
         return true;
     });
     std::uint32_t kept = 0;
@@ -150,13 +153,13 @@ void CellNeighborSearch::gather(std::uint32_t site) {
             rivals_[kept++] = rivals_[n];
         }
     rivals_.resize(kept);
-    for (double& winner : winner_) winner = moved[std::size_t(winner)];
+    for (float& winner : winner_) winner = float(moved[std::size_t(winner)]);
 }
 
 void CellNeighborSearch::mark_winners() {
     is_neighbor_.assign(rivals_.size(), 0);
     for (std::size_t n = 0; n < rivals_.size(); ++n) is_neighbor_[n] = rivals_[n].site < 0 ? 1 : 0;
-    for (const double winner : winner_) is_neighbor_[std::size_t(winner)] = 1;
+    for (const float winner : winner_) is_neighbor_[std::size_t(winner)] = 1;
 }
 
 /// Drops the rivals that cannot win in a patch; divides it where others than known neighbours are left.
@@ -196,23 +199,23 @@ void CellNeighborSearch::settle(const Patch& patch, bool finest) {
 }
 
 void CellNeighborSearch::list_coarse_patches() {
-    may_win_.resize(rivals_.size() * coarse_patches);
-    for (std::size_t n = 0; n < rivals_.size(); ++n) {
-        const double x = rivals_[n].slope.x(), y = rivals_[n].slope.y(), z = rivals_[n].slope.z();
-        const double constant = rivals_[n].constant, steepness = rivals_[n].steepness;
-        std::uint8_t* may_win = may_win_.data() + n * coarse_patches;
+    for (std::vector<std::uint32_t>& rivals : may_win_) rivals.clear();
+    for (std::uint32_t n = 0; n < rivals_.size(); ++n) {
+        const auto x = float(rivals_[n].slope.x()), y = float(rivals_[n].slope.y()), z = float(rivals_[n].slope.z());
+        const auto constant = float(rivals_[n].constant), steepness = float(rivals_[n].steepness);
+        float margin[coarse_patches];
         OPAL_SIMD
-        for (int patch = 0; patch < coarse_patches; ++patch) {
-            const double kappa = centre_x_[patch] * x + centre_y_[patch] * y + centre_z_[patch] * z + constant;
-            may_win[patch] = kappa + reach_[patch] * steepness >= (1.0 - near_miss) * lowest_[patch] ? 1 : 0;
-        }
+        for (int patch = 0; patch < coarse_patches; ++patch)
+            margin[patch] = centre_x_[patch] * x + centre_y_[patch] * y + centre_z_[patch] * z + constant +
+                            reach_[patch] * steepness - (1.0f - float(near_miss)) * lowest_[patch];
+        for (int patch = 0; patch < coarse_patches; ++patch)
+            if (margin[patch] >= 0.0f) may_win_[patch].push_back(n);
     }
     in_patch_.clear();
     patches_.clear();
     for (int patch = 0; patch < coarse_patches; ++patch) {
         const auto first = std::uint32_t(in_patch_.size());
-        for (std::uint32_t n = 0; n < rivals_.size(); ++n)
-            if (may_win_[n * coarse_patches + std::size_t(patch)] != 0) in_patch_.push_back(n);
+        in_patch_.insert(in_patch_.end(), may_win_[patch].begin(), may_win_[patch].end());
         patches_.push_back({patch / (coarse_edge * coarse_edge), 0, patch / coarse_edge % coarse_edge, patch % coarse_edge, first,
                             std::uint32_t(in_patch_.size())});
     }

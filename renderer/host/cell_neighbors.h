@@ -64,13 +64,13 @@ class CellNeighborSearch {
     const SiteTree& tree_;
     openvdb::BBoxd box_mm_;
 
-    // The coarse patches' centres and how far their corners are from them.
-    double centre_x_[coarse_patches], centre_y_[coarse_patches], centre_z_[coarse_patches], reach_[coarse_patches];
+    // The coarse patches' centres and how far their corners are from them. Single precision is far below near misses.
+    float centre_x_[coarse_patches], centre_y_[coarse_patches], centre_z_[coarse_patches], reach_[coarse_patches];
     // For the present cell, in each coarse patch: a lower bound of the largest kappa; the largest at the centre and whose it is.
-    double lowest_[coarse_patches], best_[coarse_patches], winner_[coarse_patches];
+    float lowest_[coarse_patches], best_[coarse_patches], winner_[coarse_patches];
     std::vector<SiteTree::Pending> pending_;
     std::vector<Rival> rivals_;
-    std::vector<std::uint8_t> may_win_;  ///< of each rival, in each coarse patch
+    std::vector<std::uint32_t> may_win_[coarse_patches];  ///< rivals, in each coarse patch
     std::vector<char> is_neighbor_;
     std::vector<std::uint32_t> in_patch_, in_finer_patch_;
     std::vector<Patch> patches_, finer_patches_;
