@@ -35,6 +35,15 @@ OPAL_HD inline float delta_mm(const CellSite& site, Vec3 position) {
     return length(position - site.position()) - site.weight_mm;
 }
 
+/// No place nearer than this to one in a cell lies in another cell; 0 where the place itself does. Half of what the nearest
+/// neighbour is behind by, as each delta is 1-Lipschitz.
+OPAL_HD inline float cell_clearance_mm(const CellField& field, Vec3 position, int cell) {
+    float second_mm = 3.0e38f;
+    for (uint32_t k = field.first[cell]; k < field.first[cell + 1]; ++k)
+        second_mm = min_of(second_mm, delta_mm(field.sites[field.neighbors[k]], position));
+    return max_of(0.0f, 0.5f * (second_mm - delta_mm(field.sites[cell], position)) - field.rounding_mm);
+}
+
 /// A site whose cell is likely to be near a place.
 OPAL_HD inline int nearby_cell(const CellField& field, Vec3 position) {
     const Vec3 box = field.boxes_per_mm * (position - field.grid_origin);

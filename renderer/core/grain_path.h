@@ -20,6 +20,13 @@ struct GrainsView {
     CellField cells;
 };
 
+/// A ball of this radius about a place (object mm) in `grain`, and in `cell` where grains are cells, lies in the grain.
+OPAL_HD inline float grain_clearance_mm(const GrainsView& grains, Vec3 position, int grain, int cell) {
+    if (grains.method == GrainMethod::voxels) return grain_clearance_mm(grains.voxels, position, grain);
+    if (cell < 0 || grains.cells.grain[cell] != grain) return 0.0f;
+    return cell_clearance_mm(grains.cells, position, cell);
+}
+
 /// The grains along one ray, by the method of the opal.
 class GrainPath {
   public:

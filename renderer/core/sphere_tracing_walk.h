@@ -25,7 +25,7 @@ class SphereTracingWalk {
             cell_ = locate_cell(field_, position, cell_);
             const int grain = field_.grain[cell_];
             if (grain != current) return grain;
-            distance += max_of(clear_mm(position), epsilon_mm);
+            distance += max_of(cell_clearance_mm(field_, position, cell_), epsilon_mm);
             if (!(distance < end)) {
                 distance = end;
                 return 0;
@@ -36,13 +36,6 @@ class SphereTracingWalk {
     OPAL_HD int cell() const { return cell_; }
 
   private:
-    OPAL_HD float clear_mm(Vec3 position) const {
-        float second_mm = 3.0e38f;
-        for (uint32_t k = field_.first[cell_]; k < field_.first[cell_ + 1]; ++k)
-            second_mm = min_of(second_mm, delta_mm(field_.sites[field_.neighbors[k]], position));
-        return 0.5f * (second_mm - delta_mm(field_.sites[cell_], position));
-    }
-
     const CellField& field_;
     Vec3 origin_, direction_;
     int cell_;
