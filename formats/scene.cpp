@@ -24,6 +24,7 @@ const std::vector<std::string> upsampling_names = {"jakob-hanika", "smits", "bas
 const std::vector<std::string> diffraction_names = {"two-beam", "ewald-fresnel", "laue", "none"};
 const std::vector<std::string> dispersion_names = {"full", "bands", "none"};
 const std::vector<std::string> majorant_names = {"local", "global"};
+const std::vector<std::string> grains_names = {"auto", "cells", "voxels", "sphere-tracing", "hyperboloid"};
 const std::vector<std::string> material_names = {"diffuse"};
 const std::vector<std::string> object_names = {"opal", "mesh", "plane", "sphere", "cylinder"};
 
@@ -130,7 +131,7 @@ ColorDescription read_color(TomlSection section) {
 OpalDescription read_opal(TomlSection section) {
     OpalDescription opal;
     opal.diffraction = enum_choice(section, "diffraction", opal.diffraction, diffraction_names);
-    section.choice("grains", "auto", {"auto", "voxels"});
+    opal.grains = enum_choice(section, "grains", opal.grains, grains_names);
     opal.ewald_tolerance = section.number("ewald_tolerance", opal.ewald_tolerance, NumberRange{0.0, 0.5, true});
     opal.max_odds = section.number("max_odds", opal.max_odds, NumberRange::between(1.0, 1.0e6));
     opal.dispersion = enum_choice(section, "dispersion", opal.dispersion, dispersion_names);
@@ -264,9 +265,10 @@ std::string scene_to_toml(const SceneDescription& scene) {
         text += fmt::format("temperature_k = {}\n", scene.environment.temperature_k);
     text += fmt::format(
         "\n[opal]\ndiffraction = \"{}\"\newald_tolerance = {}\nmax_odds = {}\ndispersion = \"{}\"\nmajorants = \"{}\"\n"
-        "grains = \"voxels\"\ncompanions = {}\n",
+        "grains = \"{}\"\ncompanions = {}\n",
         name(diffraction_names, scene.opal.diffraction), scene.opal.ewald_tolerance, scene.opal.max_odds,
-        name(dispersion_names, scene.opal.dispersion), name(majorant_names, scene.opal.majorants), scene.opal.companions);
+        name(dispersion_names, scene.opal.dispersion), name(majorant_names, scene.opal.majorants),
+        name(grains_names, scene.opal.grains), scene.opal.companions);
     for (const MaterialDescription& material : scene.materials)
         text += fmt::format("\n[[material]]\nname = {}\nkind = \"{}\"\nalbedo = {}\n", toml_quoted(material.name),
                             name(material_names, material.kind), vector_text(material.albedo));

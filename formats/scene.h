@@ -19,6 +19,7 @@ enum class Upsampling { jakob_hanika, smits, basis };
 enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
 enum class Dispersion { full, bands, none };
 enum class MajorantKind { local, global };
+enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
 enum class MaterialKind { diffuse };
 /// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
 /// values linear, cut at 1.
@@ -86,7 +87,9 @@ struct OpalDescription {
     Dispersion dispersion =
         Dispersion::full;  ///< full: bands and refraction; bands: diffraction alone; none: indices at 589.3 nm
     MajorantKind majorants = MajorantKind::local;
-    int companions = 3;  ///< wavelengths that travel with the hero, 0 to 7
+    GrainsKind grains =
+        GrainsKind::automatic;  ///< automatic: cells where the file's sites describe the grains exactly, else voxels
+    int companions = 3;         ///< wavelengths that travel with the hero, 0 to 7
 
     bool operator==(const OpalDescription&) const = default;
 };

@@ -5,7 +5,7 @@
 #include "renderer/core/crystal.h"
 #include "renderer/core/environment.h"
 #include "renderer/core/field_lookup.h"
-#include "renderer/core/grain_walk.h"
+#include "renderer/core/grain_path.h"
 #include "renderer/core/material.h"
 #include "renderer/core/medium.h"
 #include "renderer/core/nested_bodies.h"
@@ -31,7 +31,7 @@ enum class Diffraction { none, two_beam, ewald_fresnel, laue };
 struct OpalView {
     Diffraction diffraction = Diffraction::two_beam;
     RigidTransform world_from_object;
-    GrainField grains;
+    GrainsView grains;
     FieldView shape;                           ///< level set of the surface, object mm; its grid may be absent
     const Quaternion* orientations = nullptr;  ///< lattice -> object; element g - 1 is grain g's
     const float* grain_size_mm = nullptr;      ///< object mm; element g - 1: diameter of a ball as large as grain g

@@ -77,9 +77,8 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     const OpalAsset asset = read_opal_asset(object.file, options, file_notices);
     const std::string file = object.file.string();
     for (const std::string& notice : file_notices) notices.push_back(file + ": " + notice);
-    if (!asset.grain_id)
-        throw InputError(file +
-                         ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
+    if (!asset.shape)
+        throw InputError(file + ": holds sites alone, no shape; build it with [output] grids = [\"shape\", \"sites\"]");
 
     OpalView& opal = view_;
     opal.diffraction = transport_model(settings.diffraction);
@@ -87,8 +86,9 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.max_odds = float(settings.max_odds);
     surface_ = surface_from_level_set(*asset.shape, file);
 
-    grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
-    opal.grains = grains_->field();
+    grains_ = std::make_unique<GrainSource>(asset, settings.grains, file);
+    opal.grains = grains_->view();
+    opal.grain_size_mm = grains_->sizes_mm().data();
     shape_ = std::make_unique<FieldGridData>(*asset.shape);
     opal.shape = shape_->view();
     for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
@@ -112,8 +112,6 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.layer_nm = float(stacked_layer_nm(constants.sphere_diameter_nm));
     if (constants.mosaic_spread_deg > 0.0)
         opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
-    grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
-    opal.grain_size_mm = grain_size_mm_.data();
 
     medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(float(object.scale)), file);
     medium_fields_->attach(opal.medium);

@@ -8,7 +8,7 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/field_grid.h"
-#include "renderer/host/grain_grid.h"
+#include "renderer/host/grain_source.h"
 #include "renderer/host/medium_fields.h"
 #include "renderer/host/mesh_data.h"
 #include "renderer/host/phase_function.h"
@@ -42,14 +42,14 @@ class OpalBody {
     /// Reciprocal-lattice points inside the limiting sphere, the origin counted.
     int reciprocal_points() const { return reciprocal_points_; }
     std::size_t num_grains() const { return orientations_.size(); }
+    const GrainSource& grains() const { return *grains_; }
     /// The recipe that the file carries; empty for files made elsewhere.
     const std::string& recipe_toml() const { return recipe_toml_; }
 
   private:
     MeshData surface_;
-    std::unique_ptr<GrainGridData> grains_;
+    std::unique_ptr<GrainSource> grains_;
     std::vector<Quaternion> orientations_;
-    std::vector<float> grain_size_mm_;
     OpticalTables optics_;
     std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
     std::unique_ptr<FieldGridData> shape_;

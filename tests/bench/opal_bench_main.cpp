@@ -11,6 +11,7 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/opal_asset.h"
+#include "grains_bench.h"
 #include "media_bench.h"
 #include "modeler_bench.h"
 
@@ -52,6 +53,24 @@ int run_media(const std::filesystem::path& folder) {
     return 0;
 }
 
+int run_grains(const std::filesystem::path& folder, bool quick) {
+    opal::initialize_openvdb();
+    std::filesystem::create_directories(folder);
+    const std::vector<opal::GrainsBenchRow> rows = opal::bench_grains(quick);
+    opal::AtomicFile file(folder / "grains.csv");
+    std::ofstream csv(file.temporary_path());
+    csv << "weights,sites,method,voxels_across,ns_per_grain,bytes,build_s,crossings,missed,spurious,wrong_length,mean_error_um,"
+           "largest_error_um\n";
+    for (const opal::GrainsBenchRow& row : rows)
+        csv << fmt::format("{},{},{},{},{:.4g},{},{:.4g},{},{},{},{:.4g},{:.4g},{:.4g}\n", row.weights, row.sites, row.method,
+                           row.voxels_across, row.ns_per_grain, row.bytes, row.build_s, row.crossings, row.missed, row.spurious,
+                           row.wrong_length, row.mean_error_um, row.largest_error_um);
+    csv.close();
+    if (!csv) throw opal::SystemError(fmt::format("{}: writing failed", (folder / "grains.csv").string()));
+    file.commit();
+    return 0;
+}
+
 int run_bench(int argc, char** argv) {
     CLI::App app("Measures opal's programs: speed and memory as ratios within one run.", "opal-bench");
     app.require_subcommand(1);
@@ -63,6 +82,9 @@ int run_bench(int argc, char** argv) {
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
     color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    CLI::App* const grains = app.add_subcommand("grains", "finding the grains along rays: speed, memory, errors (some minutes)");
+    grains->add_option("-o,--output", arguments.folder, "folder for grains.csv")->required()->type_name("DIR");
+    grains->add_flag("--quick", arguments.quick, "1,000 sites alone");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -74,6 +96,7 @@ int run_bench(int argc, char** argv) {
         opal::bench_color(arguments.folder);
         return 0;
     }
+    if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (media->parsed()) return run_media(arguments.folder);
     return run_modeler(arguments);
 }

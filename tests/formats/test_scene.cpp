@@ -19,6 +19,14 @@ TEST(Scene, Defaults) {
     EXPECT_EQ(scene.render.max_bounces, 64);
     EXPECT_EQ(scene.opal.companions, 3);
     EXPECT_EQ(scene.environment.kind, EnvironmentKind::studio);
+    EXPECT_EQ(scene.opal.grains, GrainsKind::automatic);
+}
+
+TEST(Scene, GrainsByName) {
+    EXPECT_EQ(parse(minimal, {"opal.grains=cells"}).opal.grains, GrainsKind::cells);
+    EXPECT_EQ(parse(minimal, {"opal.grains=sphere-tracing"}).opal.grains, GrainsKind::sphere_tracing);
+    EXPECT_NE(scene_to_toml(parse(minimal, {"opal.grains=hyperboloid"})).find("grains = \"hyperboloid\""), std::string::npos);
+    EXPECT_INPUT_ERROR(parse(minimal, {"opal.grains=cell"}), "did you mean 'cells'?");
 }
 
 TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {
