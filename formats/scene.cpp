@@ -147,6 +147,7 @@ ObjectDescription read_object(TomlSection section, const std::vector<std::string
     }
     if (object.kind == ObjectKind::opal) {
         object.orientation_seed = static_cast<std::uint64_t>(section.integer("orientation_seed", 1, 0, INT64_MAX));
+        object.priority = static_cast<int>(section.integer("priority", 0, -1000, 1000));
     } else {
         if (!section.has("material")) section.fail("material", "is needed: the name of a [[material]]");
         object.material = section.choice("material", "", materials);
@@ -182,12 +183,7 @@ SceneDescription read_document(const TomlDocument& document) {
             section.fail("name", "'" + scene.materials.back().name + "' is already taken");
         names.push_back(scene.materials.back().name);
     }
-    int opals = 0;
-    for (TomlSection& section : root.sections("object")) {
-        scene.objects.push_back(read_object(section, names));
-        if (scene.objects.back().kind == ObjectKind::opal && ++opals > 1)
-            section.fail("kind", "a scene holds one opal in this version");
-    }
+    for (TomlSection& section : root.sections("object")) scene.objects.push_back(read_object(section, names));
     if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
     root.finish();
     return scene;
@@ -200,7 +196,8 @@ std::string vector_text(const std::array<double, 3>& v) {
 std::string object_to_toml(const ObjectDescription& object) {
     std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
     if (!object.file.empty()) text += fmt::format("file = {}\n", toml_quoted(object.file.string()));
-    if (object.kind == ObjectKind::opal) text += fmt::format("orientation_seed = {}\n", object.orientation_seed);
+    if (object.kind == ObjectKind::opal)
+        text += fmt::format("orientation_seed = {}\npriority = {}\n", object.orientation_seed, object.priority);
     if (!object.material.empty()) text += fmt::format("material = {}\n", toml_quoted(object.material));
     if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
         text += fmt::format("radius_mm = {}\n", object.radius_mm);

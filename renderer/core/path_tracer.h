@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/bsdf.h"
 #include "renderer/core/interior.h"
 #include "renderer/core/scene_view.h"
-#include "renderer/core/surface_scattering.h"
 
 /// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&): Embree on the
 /// CPU.
@@ -60,23 +60,20 @@ class PathTracer {
           wavelengths_(wavelengths),
           random_(random),
           counters_(counters),
-          spectra_(scene.spectra, wavelengths) {
+          spectra_(scene.spectra, wavelengths),
+          bodies_(scene.camera_bodies) {
         weights_.count = wavelengths.count;
-        if (scene.opal.present) {
-            medium_ = lane_medium(scene.opal.medium, wavelengths);
-            optics_ = lane_optics(scene.opal, wavelengths);
-        }
     }
 
-    /// Traces one path from the camera. Where it first meets the opal from outside it goes on both ways, each weighted by its
+    /// Traces one path from the camera. Where it first meets a body from the open it goes on both ways, each weighted by its
     /// Fresnel factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the
     /// noise.
     OPAL_HD PathResult<N> trace(const Ray& camera) {
         follow(camera, 0);
         if (reflection_pending_) {
             weights_ = reflection_weights_;
-            inside_ = false;
-            specular_ = true;
+            bodies_ = scene_.camera_bodies;
+            connected_ = false;
             follow(reflection_, 1);
         }
         return result_;
@@ -86,23 +83,24 @@ class PathTracer {
     OPAL_HD void follow(Ray ray, int bounce) {
         while (true) {
             SurfaceProbe<Intersector> ahead(intersector_, ray);
-            if (bounce == 0 && ahead.found() && meets_opal_from_within(ray, ahead.hit())) inside_ = true;
-            if (bounce >= scene_.max_bounces && (inside_ || ahead.found())) {
+            const int body = bodies_.current();
+            if (bounce >= scene_.max_bounces && (body >= 0 || ahead.found())) {
                 const Lanes<N> lost = weights_.contribution();
                 for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
                 ++counters_.truncated_paths;
                 return;
             }
-            if (inside_) {
-                const InteriorEvent event =
-                    cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, ahead, visit_, weights_, random_, counters_);
+            if (body >= 0) {
+                load_body(body);
+                const InteriorEvent event = cross_interior(scene_.bodies[body], wavelengths_, optics_, medium_, ray, ahead,
+                                                           visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     if (!(dot(event.direction, event.direction) > 0.5f)) {
                         ++counters_.not_a_number;
                         return;
                     }
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
-                    specular_ = true;
+                    connected_ = false;
                     // Going back and forth between two beams is one event, however many turns it takes.
                     if (!event.turned_back) ++bounce;
                     if (!survives_roulette(bounce)) return;
@@ -118,34 +116,59 @@ class PathTracer {
                 return;
             }
             const Surface surface = surface_at(scene_, ahead.hit());
-            ray = surface.material < 0 ? meet_opal(ray, surface, bounce) : meet_diffuse(ray, surface);
+            if (surface.body >= 0) {
+                const bool entering = dot(ray.direction, surface.geometric_normal) < 0.0f;
+                const NestedBodies beyond = entering ? bodies_.entered(surface.body) : bodies_.left(surface.body);
+                if (beyond.current() == body) {
+                    // Another body, of higher priority, is on both sides: there is no surface here.
+                    bodies_ = beyond;
+                    visit_.clear_mm = 0.0f;
+                    ray = leaving(surface, ray.direction);
+                    continue;
+                }
+                ray = meet_body(ray, surface, beyond, bounce);
+            } else if (!meet_opaque(ray, surface)) {
+                return;
+            }
             if (!survives_roulette(++bounce)) return;
         }
     }
 
-    /// A camera may stand inside the opal: the first surface it sees tells.
-    OPAL_HD bool meets_opal_from_within(const Ray& ray, const RayHit& hit) const {
-        if (scene_.meshes[hit.mesh].material >= 0) return false;
-        return dot(ray.direction, surface_at(scene_, hit).geometric_normal) > 0.0f;
+    /// Makes the constants of a body at the path's wavelengths known.
+    OPAL_HD void load_body(int body) {
+        if (body == loaded_body_) return;
+        medium_ = lane_medium(scene_.bodies[body].medium, wavelengths_);
+        optics_ = lane_optics(scene_.bodies[body], wavelengths_);
+        loaded_body_ = body;
     }
 
-    OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface, int bounce) {
-        const DielectricSplit<N> split = split_dielectric<N>(ray.direction, surface, optics_.surface_index);
-        if (bounce == 0 && !inside_) return keep_both(surface, split);
+    OPAL_HD void lane_indices(int body, float* index) {
+        for (int i = 0; i < N; ++i)
+            index[i] = body < 0 ? 1.0f : table_at(scene_.bodies[body].surface_index, wavelengths_.wavelength_nm[i]);
+    }
+
+    OPAL_HD bool disperses(int body) const { return body >= 0 && scene_.bodies[body].surface_disperses; }
+
+    OPAL_HD Ray meet_body(const Ray& ray, const Surface& surface, NestedBodies beyond, int bounce) {
+        float index_before[N], index_beyond[N];
+        lane_indices(bodies_.current(), index_before);
+        lane_indices(beyond.current(), index_beyond);
+        const DielectricSplit<N> split = split_dielectric<N>(ray.direction, surface, index_before, index_beyond);
+        if (bounce == 0 && bodies_.current() < 0) return keep_both(surface, split, beyond);
         const bool reflects = random_.next() < split.reflectance[0];
         for (int i = 1; i < weights_.count; ++i)
             weights_.ratio.v[i] *= reflects ? split.reflectance[i] / split.reflectance[0]
                                             : (1.0f - split.reflectance[i]) / (1.0f - split.reflectance[0]);
         if (reflects) {
             visit_.renew();
-            specular_ = true;
+            connected_ = false;
             return leaving(surface, split.reflected);
         }
-        return refracted(surface, split);
+        return refracted(surface, split, beyond);
     }
 
     /// Keeps the reflected half for later and returns the refracted one.
-    OPAL_HD Ray keep_both(const Surface& surface, const DielectricSplit<N>& split) {
+    OPAL_HD Ray keep_both(const Surface& surface, const DielectricSplit<N>& split, NestedBodies beyond) {
         reflection_ = leaving(surface, split.reflected);
         reflection_weights_ = weights_;
         for (int i = 0; i < weights_.count; ++i) {
@@ -153,15 +176,15 @@ class PathTracer {
             weights_.throughput.v[i] *= 1.0f - split.reflectance[i];
         }
         reflection_pending_ = true;
-        return refracted(surface, split);
+        return refracted(surface, split, beyond);
     }
 
-    OPAL_HD Ray refracted(const Surface& surface, const DielectricSplit<N>& split) {
+    OPAL_HD Ray refracted(const Surface& surface, const DielectricSplit<N>& split, NestedBodies beyond) {
         // Each wavelength is refracted into a direction of its own: a companion would never have gone the hero's way.
-        if (scene_.opal.surface_disperses) weights_.drop_companions();
-        inside_ = dot(split.refracted, surface.geometric_normal) < 0.0f;
+        if (disperses(bodies_.current()) || disperses(beyond.current())) weights_.drop_companions();
+        bodies_ = beyond;
         visit_.enter(0);
-        specular_ = true;
+        connected_ = false;
         return leaving(surface, split.refracted);
     }
 
@@ -169,45 +192,56 @@ class PathTracer {
         return {offset_origin(surface.position, surface.geometric_normal, direction), direction};
     }
 
-    OPAL_HD Ray meet_diffuse(const Ray& ray, const Surface& surface) {
-        const bool front = dot(ray.direction, surface.geometric_normal) < 0.0f;
-        const Vec3 normal = front ? surface.geometric_normal : -surface.geometric_normal;
-        const UpsampledColor& albedo = scene_.materials[surface.material].albedo;
-        for (int i = 0; i < weights_.count; ++i)
-            weights_.throughput.v[i] *= upsampled(scene_.spectra, albedo, wavelengths_.wavelength_nm[i]);
-        add_sampled_light(surface.position, normal);
-        const float u1 = random_.next(), u2 = random_.next();
-        const Vec3 direction = sample_cosine(normal, u1, u2);
-        specular_ = false;
-        pdf_ = max_of(0.0f, dot(direction, normal)) / pi_f;
-        return {offset_origin(surface.position, normal, direction), direction};
+    /// Scatters the path at an opaque surface. Returns whether it goes on.
+    OPAL_HD bool meet_opaque(Ray& ray, const Surface& surface) {
+        const MaterialView& material = scene_.materials[surface.material];
+        SurfaceInteraction<N> interaction;
+        interaction.surface = surface;
+        interaction.direction = ray.direction;
+        lane_indices(bodies_.current(), interaction.index_before);
+        // From inside a body the lights are behind its surface, where no straight line leads.
+        connected_ = bodies_.current() < 0 && connects_to_lights(material);
+        if (connected_) add_sampled_light(material, interaction);
+        const BsdfSample<N> sample = sample_bsdf(material, scene_.spectra, wavelengths_, interaction, random_);
+        if (sample.direction.x == 0.0f && sample.direction.y == 0.0f && sample.direction.z == 0.0f) return false;
+        for (int i = 0; i < weights_.count; ++i) {
+            weights_.throughput.v[i] *= sample.weight.v[i];
+            weights_.ratio.v[i] *= sample.ratio.v[i];
+        }
+        pdf_ = sample.pdf;
+        if (pdf_ <= 0.0f) connected_ = false;
+        visit_.renew();
+        ray = leaving(surface, sample.direction);
+        return true;
     }
 
-    /// Light that the cosine lobe at a diffuse point receives from a drawn direction of the environment (next-event estimation),
-    /// weighted against cosine sampling by the power heuristic (Veach 1997).
-    OPAL_HD void add_sampled_light(Vec3 position, Vec3 normal) {
+    /// Light that a point receives from a drawn direction of the environment (next-event estimation), weighted against the
+    /// directions that the path itself draws by the power heuristic (Veach 1997).
+    OPAL_HD void add_sampled_light(const MaterialView& material, const SurfaceInteraction<N>& interaction) {
         const float u1 = random_.next(), u2 = random_.next();
         const Vec3 direction = sample_environment(scene_.environment, u1, u2);
-        const float cosine = dot(direction, normal);
+        const Vec3 normal = interaction.face_normal();
         const float light_pdf = environment_pdf(scene_.environment, direction);
-        if (cosine <= 0.0f || light_pdf <= 0.0f) return;
-        if (intersector_.occluded({offset_origin(position, normal, direction), direction})) return;
-        const float cosine_pdf = cosine / pi_f;
-        const float weight = square(light_pdf) / (square(light_pdf) + square(cosine_pdf));
-        add_light(direction, weight * cosine_pdf / light_pdf);
+        if (dot(direction, normal) <= 0.0f || light_pdf <= 0.0f) return;
+        if (intersector_.occluded({offset_origin(interaction.surface.position, normal, direction), direction})) return;
+        const BsdfValue<N> value = evaluate_bsdf(material, scene_.spectra, wavelengths_, interaction, direction);
+        const float weight = square(light_pdf) / (square(light_pdf) + square(value.pdf));
+        Lanes<N> factor;
+        for (int i = 0; i < weights_.count; ++i) factor.v[i] = weight * value.f_cosine.v[i] / light_pdf;
+        add_light(direction, factor);
     }
 
     OPAL_HD void add_environment(Vec3 direction) {
         float weight = 1.0f;
-        if (!specular_) weight = square(pdf_) / (square(pdf_) + square(environment_pdf(scene_.environment, direction)));
-        add_light(direction, weight);
+        if (connected_) weight = square(pdf_) / (square(pdf_) + square(environment_pdf(scene_.environment, direction)));
+        add_light(direction, Lanes<N>::all(weight));
     }
 
-    OPAL_HD void add_light(Vec3 direction, float weight) {
+    OPAL_HD void add_light(Vec3 direction, const Lanes<N>& factor) {
         const Lanes<N> contribution = weights_.contribution();
         const EnvironmentFootprint footprint = environment_footprint(scene_.environment, direction);
         for (int i = 0; i < weights_.count; ++i)
-            result_.radiance.v[i] += weight * contribution.v[i] * spectra_.white[i] *
+            result_.radiance.v[i] += factor.v[i] * contribution.v[i] * spectra_.white[i] *
                                      environment_color(scene_.spectra, footprint, wavelengths_.wavelength_nm[i]);
     }
 
@@ -232,15 +266,16 @@ class PathTracer {
     LaneSpectra<N> spectra_;
     LaneMedium<N> medium_;
     LaneOptics<N> optics_;
+    int loaded_body_ = -1;  ///< whose constants the two above are
     LaneWeights<N> weights_;
     GrainVisit<N> visit_;
     PathResult<N> result_;
     Ray reflection_;
     LaneWeights<N> reflection_weights_;
     bool reflection_pending_ = false;
-    bool inside_ = false;
-    bool specular_ = true;
-    float pdf_ = 0.0f;
+    NestedBodies bodies_;     ///< where the path is
+    bool connected_ = false;  ///< lights were sampled at the last point
+    float pdf_ = 0.0f;        ///< with which the direction from there was drawn
 };
 
 /// The camera ray and the wavelengths of one sample, and its path: what a kernel does for one work index (pixel, sample).

@@ -48,7 +48,6 @@ TEST(Scene, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse("[[object]]\nkind = \"plane\"\nmaterial = \"gold\"\n"), "object.0.material: 'gold' is not known");
     EXPECT_INPUT_ERROR(parse("[[object]]\nkind = \"plane\"\n"), "object.0.material: is needed");
     EXPECT_INPUT_ERROR(parse("[object]\nkind = \"plane\"\n"), "expected tables written as [[object]]");
-    EXPECT_INPUT_ERROR(parse(minimal + minimal), "a scene holds one opal");
     EXPECT_INPUT_ERROR(parse(minimal, {"object.1.file=x.vdb"}), "there are 1 entries");
 }
 
