@@ -39,6 +39,7 @@ struct OpalView {
     const float* relative_index = nullptr;     ///< 1 nm table: n_sphere / n_medium
     const float* surface_index = nullptr;      ///< 1 nm table: effective index where light refracts
     bool surface_disperses = false;            ///< surface_index varies
+    float roughness = 0.0f;                    ///< of the surface, GGX alpha; below min_roughness: smooth
     PlanePair pairs[max_tested_pairs];
     int num_pairs = 0;
     float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block

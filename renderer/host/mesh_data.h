@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 #include "formats/scene.h"
@@ -29,8 +28,6 @@ MeshData make_plane(double size_mm);
 MeshData make_sphere(double radius_mm);
 /// A solid of revolution about Z whose flat top lies at z = 0, rounded at its upper edge: something to stand a gem on.
 MeshData make_cylinder(double radius_mm, double height_mm, double bevel_mm);
-/// A file that Assimp reads (OBJ, PLY, STL, glTF), in mm. Throws InputError.
-MeshData load_mesh(const std::filesystem::path& path);
 
 /// Rotation about X, then Y, then Z, uniform scale, translation.
 RigidTransform object_transform(const ObjectDescription& object);

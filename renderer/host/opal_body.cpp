@@ -105,6 +105,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.relative_index = optics_.relative_index.data();
     opal.surface_index = optics_.surface_index.data();
     opal.surface_disperses = optics_.surface_disperses;
+    opal.roughness = float(object.roughness);
     opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
     opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
     opal.fault = float(constants.stacking_fault_probability);
