@@ -119,8 +119,8 @@ class PathTracer {
             if (surface.body >= 0) {
                 const bool entering = dot(ray.direction, surface.geometric_normal) < 0.0f;
                 const NestedBodies beyond = entering ? bodies_.entered(surface.body) : bodies_.left(surface.body);
-                if (beyond.current() == body) {
-                    // Another body, of higher priority, is on both sides: there is no surface here.
+                if (object_of(beyond.current()) == object_of(body)) {
+                    // The same object, of higher priority, is on both sides: there is no surface here.
                     bodies_ = beyond;
                     visit_.clear_mm = 0.0f;
                     ray = leaving(surface, ray.direction);
@@ -144,6 +144,9 @@ class PathTracer {
         optics_ = lane_optics(scene_.bodies[body], wavelengths_);
         loaded_body_ = body;
     }
+
+    /// -1 in the open.
+    OPAL_HD int object_of(int body) const { return body < 0 ? -1 : scene_.bodies[body].object; }
 
     OPAL_HD void lane_indices(int body, float* index) {
         for (int i = 0; i < N; ++i)

@@ -76,8 +76,12 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
 
 void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
     opals_.push_back(std::make_unique<OpalBody>(object, settings, notices));
-    meshes_.push_back(opals_.back()->take_surface());
-    add_body(opals_.back()->view(), object.priority);
+    OpalView view = opals_.back()->view();
+    view.object = int(opals_.size() + glasses_.size());
+    for (MeshData& surface : opals_.back()->take_surfaces()) {
+        meshes_.push_back(std::move(surface));
+        add_body(view, object.priority);
+    }
 }
 
 /// The last mesh bounds it.
@@ -165,7 +169,9 @@ void HostScene::add_glass(const ObjectDescription& object, const MaterialDescrip
     glasses_.push_back(std::make_unique<GlassBody>(object, material, settings, bounds_mm));
     transform_mesh(mesh, object_transform(object));
     meshes_.push_back(std::move(mesh));
-    add_body(glasses_.back()->view(), object.priority);
+    OpalView view = glasses_.back()->view();
+    view.object = int(opals_.size() + glasses_.size());
+    add_body(view, object.priority);
 }
 
 }  // namespace opal

@@ -11,6 +11,7 @@
 #include "formats/units.h"
 #include "renderer/core/mosaic.h"
 #include "renderer/host/opal_surface.h"
+#include "renderer/host/patch_surface.h"
 #include "renderer/host/stacking.h"
 
 namespace opal {
@@ -87,8 +88,14 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.max_odds = float(settings.max_odds);
     opal.world_from_object = object_transform(object);
 
-    surface_ = surface_from_level_set(*asset.shape, file);
-    transform_mesh(surface_, opal.world_from_object);
+    if (object.exact && asset.bezier_patches.empty())
+        throw InputError(file + ": has no Bezier patches, which exact = true asks for; shapes of kind \"bezier\" have them");
+    if (object.exact) {
+        surfaces_ = surfaces_from_patches(asset.bezier_patches, opal.world_from_object);
+    } else {
+        surfaces_.push_back(surface_from_level_set(*asset.shape, file));
+        transform_mesh(surfaces_.back(), opal.world_from_object);
+    }
 
     grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
     opal.grains = grains_->field();

@@ -30,8 +30,8 @@ class OpalBody {
     OpalBody& operator=(const OpalBody&) = delete;
 
     const OpalView& view() const { return view_; }
-    /// Hands over the surface in world space.
-    MeshData take_surface() { return std::move(surface_); }
+    /// Hands over the surface in world space: one closed mesh, or one for each part of an exact surface.
+    std::vector<MeshData> take_surfaces() { return std::move(surfaces_); }
 
     /// Reciprocal-lattice points inside the limiting sphere, the origin counted.
     int reciprocal_points() const { return reciprocal_points_; }
@@ -40,7 +40,7 @@ class OpalBody {
     const std::string& recipe_toml() const { return recipe_toml_; }
 
   private:
-    MeshData surface_;
+    std::vector<MeshData> surfaces_;
     std::unique_ptr<GrainGridData> grains_;
     std::vector<Quaternion> orientations_;
     std::vector<float> grain_size_mm_;

@@ -12,6 +12,7 @@
 #include "formats/error.h"
 #include "formats/opal_asset.h"
 #include "media_bench.h"
+#include "media_checks_bench.h"
 #include "modeler_bench.h"
 
 namespace {
@@ -19,6 +20,8 @@ namespace {
 struct BenchArguments {
     std::string folder;
     bool quick = false;
+    std::string scenes = "examples/media_checks";
+    int samples = 16;
 };
 
 int run_modeler(const BenchArguments& arguments) {
@@ -63,6 +66,13 @@ int run_bench(int argc, char** argv) {
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
     color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    CLI::App* const checks = app.add_subcommand(
+        "media-checks", "examples/media_checks: speed and variance, to be run beside other renderers (some minutes)");
+    checks->add_option("-o,--output", arguments.folder, "folder for media_checks.csv and disc.exr")->required()->type_name("DIR");
+    checks->add_option("--scenes", arguments.scenes, "folder of the scenes")->type_name("DIR")->capture_default_str();
+    checks->add_option("--spp", arguments.samples, "samples per pixel of each of two renders")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -75,6 +85,11 @@ int run_bench(int argc, char** argv) {
         return 0;
     }
     if (media->parsed()) return run_media(arguments.folder);
+    if (checks->parsed()) {
+        opal::initialize_openvdb();
+        opal::bench_media_checks(arguments.scenes, arguments.folder, arguments.samples);
+        return 0;
+    }
     return run_modeler(arguments);
 }
 
