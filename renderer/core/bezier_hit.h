@@ -30,18 +30,20 @@ OPAL_HD inline PatchHit polish_patch_hit(const BezierPatch& patch, const Ray& ra
     constexpr int most_steps = 12;
     constexpr double exact = 1.0e-9;
     using bezier_detail::dot;
-    const Frame frame(ray.direction);
-    const double across[2][3] = {{double(frame.tangent.x), double(frame.tangent.y), double(frame.tangent.z)},
-                                 {double(frame.bitangent.x), double(frame.bitangent.y), double(frame.bitangent.z)}};
     const double along[3] = {double(ray.direction.x), double(ray.direction.y), double(ray.direction.z)};
     const double origin[3] = {double(ray.origin.x), double(ray.origin.y), double(ray.origin.z)};
+    const Frame frame(ray.direction);
+    const double tangent[3] = {double(frame.tangent.x), double(frame.tangent.y), double(frame.tangent.z)};
+    double across[2][3];  // in double, as a float's rounding shows at grazing incidence
+    bezier_detail::cross(along, tangent, 1.0, across[0]);
+    bezier_detail::cross(along, across[0], 1.0, across[1]);
     double u = double(start.u), v = double(start.v);
     for (int step = 0;; ++step) {
         const BezierPoint point = evaluate_bezier(patch, u, v);
         const double offset[3] = {point.position_mm[0] - origin[0], point.position_mm[1] - origin[1],
                                   point.position_mm[2] - origin[2]};
         const double f = dot(across[0], offset), g = dot(across[1], offset);
-        const double residual_mm = sqrt(f * f + g * g), distance_mm = dot(along, offset);
+        const double residual_mm = sqrt(f * f + g * g), distance_mm = dot(along, offset) / dot(along, along);
         const double fu = dot(across[0], point.du_mm), fv = dot(across[0], point.dv_mm);
         const double gu = dot(across[1], point.du_mm), gv = dot(across[1], point.dv_mm);
         const double determinant = fu * gv - fv * gu;
