@@ -66,7 +66,7 @@ TEST(Scene, ErrorsOfMaterials) {
     EXPECT_INPUT_ERROR(parse(glass + "albedo = 0.5\n" + minimal), "unknown key 'material.0.albedo'");
     EXPECT_INPUT_ERROR(parse(glass + "n = \"silika\"\n" + minimal), "did you mean 'silica'?");
     EXPECT_INPUT_ERROR(parse(glass + "medium = { absorber = \"pink\" }\n" + minimal),
-                       "folder/s.toml:4:12: material.0.medium.absorber");
+                       "folder/s.toml:4:23: material.0.medium.absorber");
     EXPECT_INPUT_ERROR(parse("[[material]]\nname = \"r\"\nkind = \"conductor\"\nmetal = \"rodium\"\n" + minimal),
                        "did you mean 'rhodium'?");
     EXPECT_INPUT_ERROR(parse(glass + "[[object]]\nkind = \"plane\"\nmaterial = \"m\"\n"), "a plane encloses nothing");
