@@ -66,13 +66,14 @@ MediumDescription read_medium(TomlSection section) {
 
 std::string medium_to_toml(const MediumDescription& medium) {
     std::string text = fmt::format(
-        "medium = {{ absorber = {}, sigma_a_per_mm = {}, sigma_a_reference_nm = {}, sigma_s_per_mm = {}, asymmetry = {}",
+        "medium.absorber = {}\nmedium.sigma_a_per_mm = {}\nmedium.sigma_a_reference_nm = {}\nmedium.sigma_s_per_mm = {}\n"
+        "medium.asymmetry = {}\n",
         toml_quoted(medium.absorber), medium.sigma_a_per_mm, medium.sigma_a_reference_nm, medium.sigma_s_per_mm,
         medium.asymmetry);
     if (!medium.density_file.empty())
-        text += fmt::format(", density_file = {}, density_grid = {}, density_scale = {}",
+        text += fmt::format("medium.density_file = {}\nmedium.density_grid = {}\nmedium.density_scale = {}\n",
                             toml_quoted(medium.density_file.string()), toml_quoted(medium.density_grid), medium.density_scale);
-    return text + " }\n";
+    return text;
 }
 
 std::string index_to_toml(const RefractiveIndex& index) {
@@ -129,6 +130,7 @@ ObjectDescription read_object(TomlSection section, const std::vector<MaterialDes
     ObjectDescription object;
     if (!section.has("kind")) section.fail("kind", "is needed; allowed: " + join(object_names));
     object.kind = enum_choice(section, "kind", object.kind, object_names);
+    object.name = section.text("name", "");
     if (object.kind == ObjectKind::opal || object.kind == ObjectKind::mesh) {
         object.file = section.path("file");
         if (object.file.empty()) section.fail("file", "is needed for this kind of object");
@@ -159,6 +161,7 @@ ObjectDescription read_object(TomlSection section, const std::vector<MaterialDes
 
 std::string object_to_toml(const ObjectDescription& object) {
     std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
+    if (!object.name.empty()) text += fmt::format("name = {}\n", toml_quoted(object.name));
     if (!object.file.empty()) text += fmt::format("file = {}\n", toml_quoted(object.file.string()));
     if (object.kind == ObjectKind::opal)
         text += fmt::format("orientation_seed = {}\nroughness = {}\nexact = {}\npriority = {}\n", object.orientation_seed,

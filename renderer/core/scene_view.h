@@ -10,6 +10,7 @@
 #include "renderer/core/material.h"
 #include "renderer/core/medium.h"
 #include "renderer/core/nested_bodies.h"
+#include "renderer/core/pixel_filter.h"
 #include "renderer/core/two_beam.h"
 
 /// Everything the transport reads: pointers and counts, the one thing that crosses to a device.
@@ -44,6 +45,7 @@ struct OpalView {
     bool surface_disperses = false;            ///< surface_index varies
     float roughness = 0.0f;                    ///< of the surface, GGX alpha; below min_roughness: smooth
     PlanePair pairs[max_tested_pairs];
+    PlaneFamilies families;  ///< of the pairs
     int num_pairs = 0;
     float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
     float fault = 0.0f;             ///< probability of a stacking fault per layer
@@ -81,7 +83,7 @@ struct SceneView {
     int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
     bool stratified = true;
-    bool tent_filter = true;
+    PixelFilter filter;
 };
 
 /// What a ray met.

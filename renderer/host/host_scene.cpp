@@ -24,6 +24,11 @@ SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
 }
 
+/// The four kinds stand in the same order.
+PixelFilter pixel_filter(const RenderDescription& render) {
+    return {static_cast<PixelFilterKind>(render.filter), float(render.filter_radius_px)};
+}
+
 }  // namespace
 
 Camera make_camera(const CameraDescription& description, int width, int height) {
@@ -47,6 +52,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
                                      description.render.sampler == SamplerKind::independent})),
       environment_(make_environment(description.environment, description.color.upsampling)) {
+    tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
         material_data_.emplace_back(material, spectra_.upsampling, description.opal.dispersion);
     for (const MaterialData& material : material_data_) materials_.push_back(material.view());
@@ -71,7 +77,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
     view_.stratified = render.sampler == SamplerKind::stratified;
-    view_.tent_filter = render.filter == FilterKind::tent;
+    view_.filter = pixel_filter(render);
 }
 
 void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/command.h"
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
@@ -28,6 +29,9 @@ class HostScene {
     const std::vector<MeshData>& meshes() const { return meshes_; }
     const EnvironmentMap& environment() const { return environment_; }
 
+    /// What preparing the tables of light, colours and spectra took.
+    double tables_seconds() const { return tables_s_; }
+
     /// Of the opal that has most; see OpalBody.
     int reciprocal_points() const;
     /// Of all opals together.
@@ -43,6 +47,7 @@ class HostScene {
     void add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
                    MeshData mesh);
 
+    const Stopwatch watch_;
     SpectrumTablesData spectra_;
     EnvironmentMap environment_;
     std::vector<MaterialData> material_data_;
@@ -54,6 +59,7 @@ class HostScene {
     std::vector<OpalView> bodies_;
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
     SceneView view_;
+    double tables_s_ = 0.0;
 };
 
 /// The camera of a description for a picture of the given size.

@@ -64,7 +64,7 @@ Image rendered(SceneDescription scene, std::uint64_t seed, int samples, double& 
     const HostScene host(scene, notices);
     const EmbreeScene intersector(host.meshes());
     Film film(scene.render.width, scene.render.height, false, xyz_of(illuminant_spectrum(scene.film.white)));
-    seconds += render_cpu(host, intersector, {samples, 0.0}, film, [](double) {}).seconds;
+    seconds += render_cpu(host, intersector, {samples, 0.0, 0.0}, film, [](const RenderProgress&) {}).seconds;
     return film.to_image();
 }
 
