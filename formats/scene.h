@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/material.h"
+
 namespace opal {
 
 enum class SamplerKind { stratified, independent };
@@ -20,7 +22,6 @@ enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
 enum class Dispersion { full, bands, none };
 enum class MajorantKind { local, global };
 enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
-enum class MaterialKind { diffuse };
 /// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
 /// values linear, cut at 1.
 enum class ToneCurve { filmic, srgb, none };
@@ -94,11 +95,8 @@ struct OpalDescription {
     bool operator==(const OpalDescription&) const = default;
 };
 
-struct MaterialDescription {
-    std::string name;
-    MaterialKind kind = MaterialKind::diffuse;
-    std::array<double, 3> albedo = {0.5, 0.5, 0.5};  ///< linear sRGB reflectance
-};
+/// The least roughness of a surface that is not smooth.
+inline constexpr double min_scene_roughness = 1.0e-3;
 
 struct ObjectDescription {
     ObjectKind kind = ObjectKind::opal;
@@ -112,8 +110,11 @@ struct ObjectDescription {
     double height_mm = 2.0;   ///< cylinder: from z = 0 down to -height, so that things stand on it
     double bevel_mm = 0.3;    ///< cylinder: rounding of its upper edge
     double size_mm = 2000.0;  ///< plane: edge of the square
-    int priority = 0;         ///< opal: where bodies overlap the one of higher priority is there; of equal ones the later
-    std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
+    int priority = 0;  ///< opal, dielectric: where bodies overlap the one of higher priority is there; of equal ones the later
+    std::optional<double> smooth_normals_deg;  ///< mesh: faces that meet at less share a normal; unset: as the file says
+    double roughness = 0.0;                    ///< opal: GGX alpha of its surface; 0: polished
+    bool exact = false;                        ///< opal: its Bezier patches themselves, not the level set's surface
+    std::uint64_t orientation_seed = 1;        ///< opal made elsewhere: seed of its grains' orientations
 
     bool operator==(const ObjectDescription&) const = default;
 };

@@ -9,6 +9,8 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
+#include "renderer/host/glass_body.h"
+#include "renderer/host/material_data.h"
 #include "renderer/host/mesh_data.h"
 #include "renderer/host/opal_cache.h"
 #include "renderer/host/spectrum_tables.h"
@@ -43,15 +45,19 @@ class HostScene {
     void add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal);
     void add_body(const OpalView& view, int priority);
     void order_bodies();
-    void add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials);
+    void add_mesh(const ObjectDescription& object, const SceneDescription& scene, std::vector<std::string>& notices);
+    void add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
+                   MeshData mesh);
 
     const Stopwatch watch_;
     SpectrumTablesData spectra_;
     EnvironmentMap environment_;
+    std::vector<MaterialData> material_data_;
     std::vector<MaterialView> materials_;
     std::vector<MeshData> meshes_;
     std::vector<MeshView> mesh_views_;
     std::vector<std::shared_ptr<const OpalBody>> opals_;
+    std::vector<std::unique_ptr<GlassBody>> glasses_;
     std::vector<OpalView> bodies_;
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
     SceneView view_;
