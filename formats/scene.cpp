@@ -7,13 +7,14 @@
 #include <algorithm>
 
 #include "formats/illuminant.h"
+#include "formats/scene_lights.h"
 #include "formats/text.h"
 #include "formats/toml_reader.h"
 
 namespace opal {
 namespace {
 
-const std::vector<std::string> sampler_names = {"stratified", "independent"};
+const std::vector<std::string> sampler_names = {"sobol", "stratified", "independent"};
 const std::vector<std::string> filter_names = {"tent", "box"};
 const std::vector<std::string> camera_names = {"perspective", "orthographic"};
 const std::vector<std::string> environment_names = {"studio", "constant", "file"};
@@ -189,6 +190,7 @@ SceneDescription read_document(const TomlDocument& document) {
             section.fail("kind", "a scene holds one opal in this version");
     }
     if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
+    for (TomlSection& section : root.sections("light")) scene.lights.push_back(read_light(section));
     root.finish();
     return scene;
 }
@@ -255,6 +257,7 @@ std::string scene_to_toml(const SceneDescription& scene) {
         text += fmt::format("\n[[material]]\nname = {}\nkind = \"{}\"\nalbedo = {}\n", toml_quoted(material.name),
                             name(material_names, material.kind), vector_text(material.albedo));
     for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
+    for (const LightDescription& light : scene.lights) text += light_to_toml(light);
     return text;
 }
 
