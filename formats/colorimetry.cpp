@@ -123,6 +123,10 @@ double srgb_encoded(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
+double srgb_decoded(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
 Matrix3 bradford_adaptation(Xyz from, Xyz to) {
     const Xyz source = transformed(bradford, from), target = transformed(bradford, to);
     Matrix3 scaled = bradford;

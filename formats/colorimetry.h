@@ -53,6 +53,8 @@ inline constexpr Xyz srgb_white = {0.9504707, 1.0, 1.0888285};
 
 /// Encodes a linear component for display (IEC 61966-2-1).
 double srgb_encoded(double linear);
+/// The linear component of an encoded one.
+double srgb_decoded(double encoded);
 
 /// Chromatic adaptation of XYZ from one white to another: von Kries scaling of the cone responses of Lam and Rigg's Bradford
 /// matrix ("linear Bradford", as in ICC.1:2022 annex E). `from` becomes `to` exactly.
@@ -62,6 +64,11 @@ Xyz operator*(const Matrix3& matrix, Xyz color);
 /// CIE 1976 L*a*b* relative to a white (CIE 015), and the colour difference dE*ab, the distance in it.
 Lab lab_from_xyz(Xyz color, Xyz white);
 double delta_e_76(const Lab& a, const Lab& b);
+
+/// Colour difference CIEDE2000 (CIE 142-2001; ISO/CIE 11664-6), parametric factors 1, in the form of Sharma, Wu and Dalal,
+/// "The CIEDE2000 color-difference formula: implementation notes", Color Research and Application 30 (2005). About 1 is just
+/// noticeable side by side.
+double delta_e_2000(const Lab& a, const Lab& b);
 
 /// Correlated colour temperature (K) and distance from the Planckian locus in CIE 1960 (u, v), positive above the locus
 /// (CIE 015; ANSI C78.377): the nearest point of the locus, from 800 K to 100,000 K, by golden-section search over 1 / T.

@@ -15,6 +15,7 @@ namespace opal {
 namespace {
 
 const std::vector<std::string> sampler_names = {"sobol", "stratified", "independent"};
+const std::vector<std::string> light_sampling_names = {"both", "connections", "scattering"};
 const std::vector<std::string> filter_names = {"tent", "box"};
 const std::vector<std::string> camera_names = {"perspective", "orthographic"};
 const std::vector<std::string> environment_names = {"studio", "constant", "file"};
@@ -42,6 +43,7 @@ RenderDescription read_render(TomlSection section) {
     render.max_bounces = static_cast<int>(section.integer("max_bounces", render.max_bounces, 1, 1'000'000));
     render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
     render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
+    render.light_sampling = enum_choice(section, "light_sampling", render.light_sampling, light_sampling_names);
     render.filter = enum_choice(section, "filter", render.filter, filter_names);
     section.finish();
     return render;
@@ -148,6 +150,7 @@ ObjectDescription read_object(TomlSection section, const std::vector<std::string
     }
     if (object.kind == ObjectKind::opal) {
         object.orientation_seed = static_cast<std::uint64_t>(section.integer("orientation_seed", 1, 0, INT64_MAX));
+        object.priority = static_cast<int>(section.integer("priority", 0, -1000, 1000));
     } else {
         if (!section.has("material")) section.fail("material", "is needed: the name of a [[material]]");
         object.material = section.choice("material", "", materials);
@@ -183,12 +186,7 @@ SceneDescription read_document(const TomlDocument& document) {
             section.fail("name", "'" + scene.materials.back().name + "' is already taken");
         names.push_back(scene.materials.back().name);
     }
-    int opals = 0;
-    for (TomlSection& section : root.sections("object")) {
-        scene.objects.push_back(read_object(section, names));
-        if (scene.objects.back().kind == ObjectKind::opal && ++opals > 1)
-            section.fail("kind", "a scene holds one opal in this version");
-    }
+    for (TomlSection& section : root.sections("object")) scene.objects.push_back(read_object(section, names));
     if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
     for (TomlSection& section : root.sections("light")) scene.lights.push_back(read_light(section));
     root.finish();
@@ -202,7 +200,8 @@ std::string vector_text(const std::array<double, 3>& v) {
 std::string object_to_toml(const ObjectDescription& object) {
     std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
     if (!object.file.empty()) text += fmt::format("file = {}\n", toml_quoted(object.file.string()));
-    if (object.kind == ObjectKind::opal) text += fmt::format("orientation_seed = {}\n", object.orientation_seed);
+    if (object.kind == ObjectKind::opal)
+        text += fmt::format("orientation_seed = {}\npriority = {}\n", object.orientation_seed, object.priority);
     if (!object.material.empty()) text += fmt::format("material = {}\n", toml_quoted(object.material));
     if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
         text += fmt::format("radius_mm = {}\n", object.radius_mm);
@@ -228,9 +227,10 @@ std::string scene_to_toml(const SceneDescription& scene) {
     const RenderDescription& render = scene.render;
     const CameraDescription& camera = scene.camera;
     std::string text = fmt::format(
-        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = \"{}\"\n",
+        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nlight_sampling = "
+        "\"{}\"\nfilter = \"{}\"\n",
         render.width, render.height, render.samples, render.max_bounces, render.seed, name(sampler_names, render.sampler),
-        name(filter_names, render.filter));
+        name(light_sampling_names, render.light_sampling), name(filter_names, render.filter));
     text += fmt::format(
         "\n[camera]\nkind = \"{}\"\nposition_mm = {}\ntarget_mm = {}\nup = {}\nvertical_fov_deg = {}\nview_height_mm = {}\n"
         "aperture_radius_mm = {}\nfocus_mm = {}\n",

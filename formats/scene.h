@@ -10,6 +10,7 @@
 namespace opal {
 
 enum class SamplerKind { sobol, stratified, independent };
+enum class LightSamplingKind { both, connections, scattering };
 enum class FilterKind { tent, box };
 enum class CameraKind { perspective, orthographic };
 enum class EnvironmentKind { studio, constant, file };
@@ -29,6 +30,7 @@ struct RenderDescription {
     int max_bounces = 64;
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;
+    LightSamplingKind light_sampling = LightSamplingKind::both;
     FilterKind filter = FilterKind::tent;
 };
 
@@ -106,10 +108,11 @@ struct ObjectDescription {
     std::array<double, 3> translate_mm = {0.0, 0.0, 0.0};
     std::array<double, 3> rotate_deg = {0.0, 0.0, 0.0};  ///< about X, then Y, then Z
     double scale = 1.0;
-    double radius_mm = 10.0;             ///< sphere, cylinder
-    double height_mm = 2.0;              ///< cylinder: from z = 0 down to -height, so that things stand on it
-    double bevel_mm = 0.3;               ///< cylinder: rounding of its upper edge
-    double size_mm = 2000.0;             ///< plane: edge of the square
+    double radius_mm = 10.0;  ///< sphere, cylinder
+    double height_mm = 2.0;   ///< cylinder: from z = 0 down to -height, so that things stand on it
+    double bevel_mm = 0.3;    ///< cylinder: rounding of its upper edge
+    double size_mm = 2000.0;  ///< plane: edge of the square
+    int priority = 0;         ///< opal: where bodies overlap the one of higher priority is there; of equal ones the later
     std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
 };
 

@@ -3,5 +3,5 @@
 #include "renderer/render_command.h"
 
 int main(int argc, char** argv) {
-    return opal::run_command("opal-render", [&] { return opal::render_command(argc, argv); });
+    return opal::run_command("opal-render", [&] { return opal::opal_render(argc, argv); });
 }

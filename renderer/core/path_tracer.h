@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/bsdf.h"
 #include "renderer/core/interior.h"
 #include "renderer/core/scene_view.h"
-#include "renderer/core/surface_scattering.h"
 
-/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&): Embree on the
-/// CPU.
+/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&, float max_mm):
+/// Embree on the CPU.
 namespace opal {
 
 /// What one path found, per lane, before the division by the lane's wavelength density.
@@ -16,28 +16,39 @@ struct PathResult {
     Lanes<N> truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
 };
 
-/// The surface ahead of a ray, looked for when it is first asked for.
+/// What is ahead of a ray, a surface or a light, looked for when it is first asked for.
 template <class Intersector>
 class SurfaceProbe {
   public:
-    OPAL_HD SurfaceProbe(const Intersector& intersector, const Ray& ray) : intersector_(intersector), ray_(ray) {}
+    /// `direct`: the ray comes straight from the camera.
+    OPAL_HD SurfaceProbe(const Intersector& intersector, const LightsView& lights, const Ray& ray, bool direct)
+        : intersector_(intersector), lights_(lights), ray_(ray), direct_(direct) {}
 
     OPAL_HD bool found() {
-        if (!asked_) found_ = intersector_.closest(ray_, hit_);
+        if (asked_) return found_;
         asked_ = true;
+        found_ = intersector_.closest(ray_, hit_);
+        meets_light_ = intersect_lights(lights_, ray_, found_ ? hit_.distance_mm : 3.0e38f, direct_, light_);
+        found_ = found_ || meets_light_;
         return found_;
     }
-    /// 0 where there is none.
-    OPAL_HD float distance_mm() { return found() ? hit_.distance_mm : 0.0f; }
-    /// Once found.
+    /// 0 where there is nothing.
+    OPAL_HD float distance_mm() { return !found() ? 0.0f : (meets_light_ ? light_.distance_mm : hit_.distance_mm); }
+    /// Once found: whether it is a light, and which; else the surface.
+    OPAL_HD bool meets_light() const { return meets_light_; }
+    OPAL_HD const LightHit& light() const { return light_; }
     OPAL_HD const RayHit& hit() const { return hit_; }
 
   private:
     const Intersector& intersector_;
+    const LightsView& lights_;
     const Ray& ray_;
     RayHit hit_;
+    LightHit light_;
+    bool direct_;
     bool asked_ = false;
     bool found_ = false;
+    bool meets_light_ = false;
 };
 
 /// The illuminant at a path's wavelengths, looked up once.
@@ -60,23 +71,20 @@ class PathTracer {
           wavelengths_(wavelengths),
           random_(random),
           counters_(counters),
-          spectra_(scene.spectra, wavelengths) {
+          spectra_(scene.spectra, wavelengths),
+          bodies_(scene.camera_bodies) {
         weights_.count = wavelengths.count;
-        if (scene.opal.present) {
-            medium_ = lane_medium(scene.opal.medium, wavelengths);
-            optics_ = lane_optics(scene.opal, wavelengths);
-        }
     }
 
-    /// Traces one path from the camera. Where it first meets the opal from outside it goes on both ways, each weighted by its
+    /// Traces one path from the camera. Where it first meets a body from the open it goes on both ways, each weighted by its
     /// Fresnel factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the
     /// noise.
     OPAL_HD PathResult<N> trace(const Ray& camera) {
         follow(camera, 0);
         if (reflection_pending_) {
             weights_ = reflection_weights_;
-            inside_ = false;
-            specular_ = true;
+            bodies_ = scene_.camera_bodies;
+            connected_ = false;
             follow(reflection_, 1);
         }
         return result_;
@@ -85,24 +93,25 @@ class PathTracer {
   private:
     OPAL_HD void follow(Ray ray, int bounce) {
         while (true) {
-            SurfaceProbe<Intersector> ahead(intersector_, ray);
-            if (bounce == 0 && ahead.found() && meets_opal_from_within(ray, ahead.hit())) inside_ = true;
-            if (bounce >= scene_.max_bounces && (inside_ || ahead.found())) {
+            SurfaceProbe<Intersector> ahead(intersector_, scene_.lights, ray, bounce == 0);
+            const int body = bodies_.current();
+            if (bounce >= scene_.max_bounces && (body >= 0 || (ahead.found() && !ahead.meets_light()))) {
                 const Lanes<N> lost = weights_.contribution();
                 for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
                 ++counters_.truncated_paths;
                 return;
             }
-            if (inside_) {
-                const InteriorEvent event =
-                    cross_interior(scene_.opal, wavelengths_, optics_, medium_, ray, ahead, visit_, weights_, random_, counters_);
+            if (body >= 0) {
+                load_body(body);
+                const InteriorEvent event = cross_interior(scene_.bodies[body], wavelengths_, optics_, medium_, ray, ahead,
+                                                           visit_, weights_, random_, counters_);
                 if (event.kind != InteriorEventKind::surface) {
                     if (!(dot(event.direction, event.direction) > 0.5f)) {
                         ++counters_.not_a_number;
                         return;
                     }
                     ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
-                    specular_ = true;
+                    connected_ = false;
                     // Going back and forth between two beams is one event, however many turns it takes.
                     if (!event.turned_back) ++bounce;
                     if (!survives_roulette(bounce)) return;
@@ -114,38 +123,67 @@ class PathTracer {
                 }
             }
             if (!ahead.found()) {
-                add_environment(ray.direction);
+                add_distant_lights(ray.direction);
+                return;
+            }
+            if (ahead.meets_light()) {
+                if (ahead.light().shines) add_met_light(ray.direction, ahead.light().light);
                 return;
             }
             const Surface surface = surface_at(scene_, ahead.hit());
-            ray = surface.material < 0 ? meet_opal(ray, surface, bounce) : meet_diffuse(ray, surface);
+            if (surface.body >= 0) {
+                const bool entering = dot(ray.direction, surface.geometric_normal) < 0.0f;
+                const NestedBodies beyond = entering ? bodies_.entered(surface.body) : bodies_.left(surface.body);
+                if (beyond.current() == body) {
+                    // Another body, of higher priority, is on both sides: there is no surface here.
+                    bodies_ = beyond;
+                    visit_.clear_mm = 0.0f;
+                    ray = leaving(surface, ray.direction);
+                    continue;
+                }
+                ray = meet_body(ray, surface, beyond, bounce);
+            } else if (!meet_opaque(ray, surface)) {
+                return;
+            }
             if (!survives_roulette(++bounce)) return;
         }
     }
 
-    /// A camera may stand inside the opal: the first surface it sees tells.
-    OPAL_HD bool meets_opal_from_within(const Ray& ray, const RayHit& hit) const {
-        if (scene_.meshes[hit.mesh].material >= 0) return false;
-        return dot(ray.direction, surface_at(scene_, hit).geometric_normal) > 0.0f;
+    /// Makes the constants of a body at the path's wavelengths known.
+    OPAL_HD void load_body(int body) {
+        if (body == loaded_body_) return;
+        medium_ = lane_medium(scene_.bodies[body].medium, wavelengths_);
+        optics_ = lane_optics(scene_.bodies[body], wavelengths_);
+        loaded_body_ = body;
     }
 
-    OPAL_HD Ray meet_opal(const Ray& ray, const Surface& surface, int bounce) {
-        const DielectricSplit<N> split = split_dielectric<N>(ray.direction, surface, optics_.surface_index);
-        if (bounce == 0 && !inside_) return keep_both(surface, split);
+    OPAL_HD void lane_indices(int body, float* index) {
+        for (int i = 0; i < N; ++i)
+            index[i] = body < 0 ? 1.0f : table_at(scene_.bodies[body].surface_index, wavelengths_.wavelength_nm[i]);
+    }
+
+    OPAL_HD bool disperses(int body) const { return body >= 0 && scene_.bodies[body].surface_disperses; }
+
+    OPAL_HD Ray meet_body(const Ray& ray, const Surface& surface, NestedBodies beyond, int bounce) {
+        float index_before[N], index_beyond[N];
+        lane_indices(bodies_.current(), index_before);
+        lane_indices(beyond.current(), index_beyond);
+        const DielectricSplit<N> split = split_dielectric<N>(ray.direction, surface, index_before, index_beyond);
+        if (bounce == 0 && bodies_.current() < 0) return keep_both(surface, split, beyond);
         const bool reflects = random_.next() < split.reflectance[0];
         for (int i = 1; i < weights_.count; ++i)
             weights_.ratio.v[i] *= reflects ? split.reflectance[i] / split.reflectance[0]
                                             : (1.0f - split.reflectance[i]) / (1.0f - split.reflectance[0]);
         if (reflects) {
             visit_.renew();
-            specular_ = true;
+            connected_ = false;
             return leaving(surface, split.reflected);
         }
-        return refracted(surface, split);
+        return refracted(surface, split, beyond);
     }
 
     /// Keeps the reflected half for later and returns the refracted one.
-    OPAL_HD Ray keep_both(const Surface& surface, const DielectricSplit<N>& split) {
+    OPAL_HD Ray keep_both(const Surface& surface, const DielectricSplit<N>& split, NestedBodies beyond) {
         reflection_ = leaving(surface, split.reflected);
         reflection_weights_ = weights_;
         for (int i = 0; i < weights_.count; ++i) {
@@ -153,15 +191,15 @@ class PathTracer {
             weights_.throughput.v[i] *= 1.0f - split.reflectance[i];
         }
         reflection_pending_ = true;
-        return refracted(surface, split);
+        return refracted(surface, split, beyond);
     }
 
-    OPAL_HD Ray refracted(const Surface& surface, const DielectricSplit<N>& split) {
+    OPAL_HD Ray refracted(const Surface& surface, const DielectricSplit<N>& split, NestedBodies beyond) {
         // Each wavelength is refracted into a direction of its own: a companion would never have gone the hero's way.
-        if (scene_.opal.surface_disperses) weights_.drop_companions();
-        inside_ = dot(split.refracted, surface.geometric_normal) < 0.0f;
+        if (disperses(bodies_.current()) || disperses(beyond.current())) weights_.drop_companions();
+        bodies_ = beyond;
         visit_.enter(0);
-        specular_ = true;
+        connected_ = false;
         return leaving(surface, split.refracted);
     }
 
@@ -169,46 +207,90 @@ class PathTracer {
         return {offset_origin(surface.position, surface.geometric_normal, direction), direction};
     }
 
-    OPAL_HD Ray meet_diffuse(const Ray& ray, const Surface& surface) {
-        const bool front = dot(ray.direction, surface.geometric_normal) < 0.0f;
-        const Vec3 normal = front ? surface.geometric_normal : -surface.geometric_normal;
-        const UpsampledColor& albedo = scene_.materials[surface.material].albedo;
-        for (int i = 0; i < weights_.count; ++i)
-            weights_.throughput.v[i] *= upsampled(scene_.spectra, albedo, wavelengths_.wavelength_nm[i]);
-        add_sampled_light(surface.position, normal);
+    /// Scatters the path at an opaque surface. Returns whether it goes on.
+    OPAL_HD bool meet_opaque(Ray& ray, const Surface& surface) {
+        const MaterialView& material = scene_.materials[surface.material];
+        SurfaceInteraction<N> interaction;
+        interaction.surface = surface;
+        interaction.direction = ray.direction;
+        lane_indices(bodies_.current(), interaction.index_before);
+        // From inside a body the lights are behind its surface, where no straight line leads.
+        connected_ = bodies_.current() < 0 && connects_to_lights(material);
+        if (connected_ && scene_.light_sampling != LightSampling::scattering) add_sampled_light(material, interaction);
+        const BsdfSample<N> sample = sample_bsdf(material, scene_.spectra, wavelengths_, interaction, random_);
+        if (sample.direction.x == 0.0f && sample.direction.y == 0.0f && sample.direction.z == 0.0f) return false;
+        for (int i = 0; i < weights_.count; ++i) {
+            weights_.throughput.v[i] *= sample.weight.v[i];
+            weights_.ratio.v[i] *= sample.ratio.v[i];
+        }
+        pdf_ = sample.pdf;
+        drawn_from_ = surface.position;
+        if (pdf_ <= 0.0f) connected_ = false;
+        visit_.renew();
+        ray = leaving(surface, sample.direction);
+        return true;
+    }
+
+    /// Weight of a direction drawn with density `pdf` that could have been drawn with `other_pdf` as well: the power heuristic
+    /// (Veach 1997).
+    OPAL_HD static float power_heuristic(float pdf, float other_pdf) {
+        const float ratio = other_pdf / pdf;
+        return 1.0f / (1.0f + ratio * ratio);
+    }
+
+    /// Light that a point receives from a drawn direction of one of the lights (next-event estimation), weighted against the
+    /// directions that the path itself draws.
+    OPAL_HD void add_sampled_light(const MaterialView& material, const SurfaceInteraction<N>& interaction) {
+        const Vec3 position = interaction.surface.position;
+        const float u = scene_.lights.count > 0 ? random_.next() : 0.0f;
         const float u1 = random_.next(), u2 = random_.next();
-        const Vec3 direction = sample_cosine(normal, u1, u2);
-        specular_ = false;
-        pdf_ = max_of(0.0f, dot(direction, normal)) / pi_f;
-        return {offset_origin(surface.position, normal, direction), direction};
+        const LightSample sample = sample_light(scene_.lights, scene_.environment, position, u, u1, u2);
+        const Vec3 normal = interaction.face_normal();
+        if (!(sample.pdf > 0.0f) || dot(sample.direction, normal) <= 0.0f) return;
+        const Ray shadow{offset_origin(position, normal, sample.direction), sample.direction};
+        const float reach_mm = sample.distance_mm * (1.0f - 1.0e-5f);
+        if (lights_occlude(scene_.lights, shadow, reach_mm, sample.light) || intersector_.occluded(shadow, reach_mm)) return;
+        const BsdfValue<N> value = evaluate_bsdf(material, scene_.spectra, wavelengths_, interaction, sample.direction);
+        const float weight = scene_.light_sampling == LightSampling::both ? power_heuristic(sample.pdf, value.pdf) : 1.0f;
+        Lanes<N> factor;
+        for (int i = 0; i < weights_.count; ++i) factor.v[i] = weight * value.f_cosine.v[i] / sample.pdf;
+        if (sample.light == environment_light)
+            add_environment(sample.direction, factor);
+        else
+            add_light(sample.direction, sample.light, factor);
     }
 
-    /// Light that the cosine lobe at a diffuse point receives from a drawn direction of the environment (next-event estimation),
-    /// weighted against cosine sampling by the power heuristic (Veach 1997).
-    OPAL_HD void add_sampled_light(Vec3 position, Vec3 normal) {
-        const float u1 = random_.next(), u2 = random_.next();
-        const Vec3 direction = sample_environment(scene_.environment, u1, u2);
-        const float cosine = dot(direction, normal);
-        const float light_pdf = environment_pdf(scene_.environment, direction);
-        if (cosine <= 0.0f || light_pdf <= 0.0f) return;
-        if (intersector_.occluded({offset_origin(position, normal, direction), direction})) return;
-        const float cosine_pdf = cosine / pi_f;
-        const float weight = square(light_pdf) / (square(light_pdf) + square(cosine_pdf));
-        add_light(direction, weight * cosine_pdf / light_pdf);
+    /// Weight of light that the path itself has met, against the connections from its last point.
+    OPAL_HD Lanes<N> weight_of_met(Vec3 direction, int light) const {
+        if (!connected_ || scene_.light_sampling == LightSampling::scattering) return Lanes<N>::all(1.0f);
+        if (scene_.light_sampling == LightSampling::connections) return Lanes<N>::all(0.0f);
+        return Lanes<N>::all(power_heuristic(pdf_, light_pdf(scene_.lights, scene_.environment, drawn_from_, direction, light)));
     }
 
-    OPAL_HD void add_environment(Vec3 direction) {
-        float weight = 1.0f;
-        if (!specular_) weight = square(pdf_) / (square(pdf_) + square(environment_pdf(scene_.environment, direction)));
-        add_light(direction, weight);
+    OPAL_HD void add_met_light(Vec3 direction, int light) { add_light(direction, light, weight_of_met(direction, light)); }
+
+    /// The environment and the suns in front of it.
+    OPAL_HD void add_distant_lights(Vec3 direction) {
+        add_environment(direction, weight_of_met(direction, environment_light));
+        for (int i = 0; i < scene_.lights.count; ++i) {
+            const LightGeometry& geometry = scene_.lights.lights[i].geometry;
+            if (geometry.shape == LightShape::sun && in_sun(geometry, direction)) add_met_light(direction, i);
+        }
     }
 
-    OPAL_HD void add_light(Vec3 direction, float weight) {
+    OPAL_HD void add_environment(Vec3 direction, const Lanes<N>& factor) {
         const Lanes<N> contribution = weights_.contribution();
         const EnvironmentFootprint footprint = environment_footprint(scene_.environment, direction);
         for (int i = 0; i < weights_.count; ++i)
-            result_.radiance.v[i] += weight * contribution.v[i] * spectra_.white[i] *
+            result_.radiance.v[i] += factor.v[i] * contribution.v[i] * spectra_.white[i] *
                                      environment_color(scene_.spectra, footprint, wavelengths_.wavelength_nm[i]);
+    }
+
+    OPAL_HD void add_light(Vec3 direction, int light, const Lanes<N>& factor) {
+        const Lanes<N> contribution = weights_.contribution();
+        for (int i = 0; i < weights_.count; ++i)
+            result_.radiance.v[i] += factor.v[i] * contribution.v[i] *
+                                     light_radiance(scene_.lights.lights[light], direction, wavelengths_.wavelength_nm[i]);
     }
 
     /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios
@@ -232,32 +314,33 @@ class PathTracer {
     LaneSpectra<N> spectra_;
     LaneMedium<N> medium_;
     LaneOptics<N> optics_;
+    int loaded_body_ = -1;  ///< whose constants the two above are
     LaneWeights<N> weights_;
     GrainVisit<N> visit_;
     PathResult<N> result_;
     Ray reflection_;
     LaneWeights<N> reflection_weights_;
     bool reflection_pending_ = false;
-    bool inside_ = false;
-    bool specular_ = true;
-    float pdf_ = 0.0f;
+    NestedBodies bodies_;     ///< where the path is
+    bool connected_ = false;  ///< lights were sampled at the last point
+    float pdf_ = 0.0f;        ///< with which the direction from there was drawn
+    Vec3 drawn_from_;         ///< that point
 };
 
 /// The camera ray and the wavelengths of one sample, and its path: what a kernel does for one work index (pixel, sample).
 template <int N, class Intersector>
 OPAL_HD PathResult<N> trace_sample(const SceneView& scene, const Intersector& intersector, uint32_t pixel, uint32_t sample,
                                    PathWavelengths<N>& wavelengths, PathCounters& counters) {
-    PathRandom random(scene.seed, pixel, sample);
-    const PixelSequence sequence(scene.seed, pixel, sample);
-    const float u = scene.stratified ? sequence.wavelength() : random.next();
-    float x = scene.stratified ? sequence.position_x() : random.next();
-    float y = scene.stratified ? sequence.position_y() : random.next();
+    PathRandom random(scene.seed, pixel, sample, scene.sampler);
+    const PixelNumbers numbers = random.pixel_numbers();
+    float x = numbers.x, y = numbers.y;
     if (scene.tent_filter) {
         x = 0.5f + sample_tent(x);
         y = 0.5f + sample_tent(y);
     }
-    wavelengths = sample_wavelengths<N>(scene.spectra, u, scene.wavelengths);
-    const float lens_u = random.next(), lens_v = random.next();
+    wavelengths = sample_wavelengths<N>(scene.spectra, numbers.wavelength, scene.wavelengths);
+    const bool lens = scene.camera.aperture_radius_mm > 0.0f;
+    const float lens_u = lens ? random.next() : 0.0f, lens_v = lens ? random.next() : 0.0f;
     const Ray ray = camera_ray(scene.camera, (float(pixel % uint32_t(scene.width)) + x) / float(scene.width),
                                (float(pixel / uint32_t(scene.width)) + y) / float(scene.height), lens_u, lens_v);
     PathTracer<N, Intersector> tracer(scene, intersector, wavelengths, random, counters);

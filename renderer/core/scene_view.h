@@ -6,7 +6,11 @@
 #include "renderer/core/environment.h"
 #include "renderer/core/field_lookup.h"
 #include "renderer/core/grain_walk.h"
+#include "renderer/core/lights.h"
+#include "renderer/core/material.h"
 #include "renderer/core/medium.h"
+#include "renderer/core/nested_bodies.h"
+#include "renderer/core/path_random.h"
 #include "renderer/core/two_beam.h"
 
 /// Everything the transport reads: pointers and counts, the one thing that crosses to a device.
@@ -17,19 +21,15 @@ struct MeshView {
     const Vec3* positions = nullptr;
     const Vec3* normals = nullptr;  ///< per vertex, outward; null where the faces are flat
     const uint32_t* indices = nullptr;
-    int material = -1;  ///< index of a diffuse material; -1 for the opal's surface
-};
-
-struct DiffuseMaterial {
-    UpsampledColor albedo;
+    int material = -1;  ///< of an opaque surface; -1 where it bounds a body
+    int body = -1;      ///< that the surface bounds; -1 where it is opaque
 };
 
 /// How lattice planes turn light.
 enum class Diffraction { none, two_beam, ewald_fresnel, laue };
 
-/// The opal of the scene.
+/// A transparent body: an opal, or glass (without diffraction).
 struct OpalView {
-    bool present = false;
     Diffraction diffraction = Diffraction::two_beam;
     RigidTransform world_from_object;
     GrainField grains;
@@ -66,18 +66,28 @@ OPAL_HD inline LaneOptics<N> lane_optics(const OpalView& opal, const PathWavelen
     return optics;
 }
 
+/// How light is found at points where a straight line leads to it. All three have the same mean.
+enum class LightSampling {
+    both,         ///< drawn lights and drawn directions, weighted against each other
+    connections,  ///< drawn lights alone
+    scattering    ///< drawn directions alone
+};
+
 struct SceneView {
     Camera camera;
     SpectrumTables spectra;
     EnvironmentView environment;
-    OpalView opal;
+    LightsView lights;  ///< beside the environment
+    LightSampling light_sampling = LightSampling::both;
+    const OpalView* bodies = nullptr;  ///< in the order of their priorities, the highest last
     const MeshView* meshes = nullptr;
-    const DiffuseMaterial* materials = nullptr;
+    const MaterialView* materials = nullptr;
+    NestedBodies camera_bodies;  ///< where the camera stands
     int width = 0, height = 0;
     int max_bounces = 64;
     int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
-    bool stratified = true;
+    PathSampler sampler = PathSampler::stratified;
     bool tent_filter = true;
 };
 
@@ -95,6 +105,7 @@ struct Surface {
     Vec3 geometric_normal;
     Vec3 shading_normal;
     int material;
+    int body;
 };
 
 OPAL_HD inline Surface surface_at(const SceneView& scene, const RayHit& hit) {
@@ -110,6 +121,7 @@ OPAL_HD inline Surface surface_at(const SceneView& scene, const RayHit& hit) {
         surface.shading_normal =
             normalize(w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]]);
     surface.material = mesh.material;
+    surface.body = mesh.body;
     return surface;
 }
 

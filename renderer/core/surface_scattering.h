@@ -13,10 +13,11 @@ struct DielectricSplit {
     float reflectance[N];
 };
 
-/// How light of unit `direction` leaves the smooth surface of a body with the lanes' indices `index`. Where an interpolated
+/// How light of unit `direction` leaves a smooth surface, with the lanes' indices before and beyond it. Where an interpolated
 /// normal would send a ray through the wrong side of the face, the face's own normal is used.
 template <int N>
-OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface& surface, const float* index) {
+OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface& surface, const float* index_before,
+                                                   const float* index_beyond) {
     const bool entering = dot(direction, surface.geometric_normal) < 0.0f;
     const Vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
     const Vec3 shading = entering ? surface.shading_normal : -surface.shading_normal;
@@ -26,12 +27,12 @@ OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface
         const float cos_incident = max_of(1.0e-7f, min_of(1.0f, -dot(direction, normal)));
         float cos_transmitted = 0.0f;
         for (int i = N - 1; i >= 0; --i)
-            split.reflectance[i] = fresnel_dielectric(cos_incident, entering ? index[i] : 1.0f / index[i], cos_transmitted);
+            split.reflectance[i] = fresnel_dielectric(cos_incident, index_beyond[i] / index_before[i], cos_transmitted);
         const bool passes = cos_transmitted > 0.0f;
         split.reflected = normalize(mirror(direction, normal));
         split.refracted = {};
         if (passes)
-            split.refracted = refract(direction, normal, entering ? index[0] : 1.0f / index[0], cos_incident, cos_transmitted);
+            split.refracted = refract(direction, normal, index_beyond[0] / index_before[0], cos_incident, cos_transmitted);
         if (dot(direction, normal) < 0.0f && dot(split.reflected, face) > 0.0f && (!passes || dot(split.refracted, face) < 0.0f))
             break;
     }

@@ -70,9 +70,10 @@ bool EmbreeScene::closest(const Ray& ray, RayHit& hit) const {
     return true;
 }
 
-bool EmbreeScene::occluded(const Ray& ray) const {
+bool EmbreeScene::occluded(const Ray& ray, float max_mm) const {
     RTCRay query;
     fill_ray(query, ray);
+    query.tfar = max_mm;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene_, &context, &query);

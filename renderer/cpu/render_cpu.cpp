@@ -130,12 +130,13 @@ void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std:
                 if (aov == "depth") *target++ = found ? hit.distance_mm : 0.0f;
                 if (aov == "grain_id") {
                     float grain = 0.0f;
-                    if (found && surface.material < 0) {
-                        const RigidTransform& transform = view.opal.world_from_object;
-                        GrainWalk walk(view.opal.grains, transform.local_from_world_point(surface.position),
+                    if (found && surface.body >= 0 && view.bodies[surface.body].diffraction != Diffraction::none) {
+                        const OpalView& opal = view.bodies[surface.body];
+                        const RigidTransform& transform = opal.world_from_object;
+                        GrainWalk walk(opal.grains, transform.local_from_world_point(surface.position),
                                        transform.local_from_world_direction(-surface.geometric_normal));
                         float distance = 0.0f;
-                        grain = float(walk.next_grain(0, distance, 3.0f / view.opal.grains.voxels_per_mm));
+                        grain = float(walk.next_grain(0, distance, 3.0f / opal.grains.voxels_per_mm));
                     }
                     *target++ = grain;
                 }

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "formats/error.h"
-#include "formats/opal_asset.h"
 #include "formats/units.h"
-#include "renderer/core/mosaic.h"
-#include "renderer/host/opal_surface.h"
-#include "renderer/host/stacking.h"
+#include "renderer/host/enclosure.h"
 #include "renderer/host/upsampler.h"
 
 namespace opal {
@@ -21,60 +19,47 @@ Vec3 to_vec3(const std::array<double, 3>& v) {
     return {float(v[0]), float(v[1]), float(v[2])};
 }
 
-/// The families that planes of the crystal offer: all inside the limiting sphere, or the strongest where there are more than a
-/// stay in a grain can mark.
-int choose_pairs(const OpalConstants& constants, PlanePair* chosen, int& reciprocal_points, std::vector<std::string>& notices) {
-    const CrystalParameters crystal{constants.sphere_diameter_nm, constants.n_sphere.at(units::wavelength_min_nm),
-                                    constants.n_medium.at(units::wavelength_min_nm)};
-    std::vector<PlanePair> pairs = stacked_pairs(crystal, constants.stacking_fault_probability, units::wavelength_min_nm);
-    reciprocal_points = 2 * int(pairs.size()) + 1;
-    const std::size_t inside = pairs.size();
-    std::erase_if(pairs, [](const PlanePair& pair) { return !(pair.form > 0.0f); });
-    if (pairs.size() > max_tested_pairs) {
-        std::stable_sort(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.form > b.form; });
-        pairs.resize(max_tested_pairs);
-        notices.push_back(
-            fmt::format("{} families of planes can diffract visible light; the {} strongest are used (next: {:.2g} of the first)",
-                        inside, max_tested_pairs, double(pairs.back().form) / double(pairs.front().form)));
-    }
-    std::copy(pairs.begin(), pairs.end(), chosen);
-    return static_cast<int>(pairs.size());
-}
-
-OpticalTables optical_tables(const OpalConstants& constants, Dispersion dispersion) {
-    OpticalTables tables;
-    const auto n_eff = [](double n_sphere, double n_medium) {
-        return float(fcc_filling * n_sphere + (1.0 - fcc_filling) * n_medium);
-    };
-    const float mean = n_eff(constants.n_sphere.at(sodium_d_nm), constants.n_medium.at(sodium_d_nm));
-    for (int i = 0; i < spectrum_samples; ++i) {
-        const double wavelength_nm = dispersion == Dispersion::none ? sodium_d_nm : units::wavelength_min_nm + i;
-        const double n_sphere = constants.n_sphere.at(wavelength_nm), n_medium = constants.n_medium.at(wavelength_nm);
-        tables.n_eff.push_back(n_eff(n_sphere, n_medium));
-        tables.contrast.push_back(float(std::abs(n_sphere * n_sphere - n_medium * n_medium)));
-        tables.relative_index.push_back(float(n_sphere / n_medium));
-        tables.surface_index.push_back(dispersion == Dispersion::full ? tables.n_eff.back() : mean);
-        tables.surface_disperses = tables.surface_disperses || tables.surface_index.back() != tables.surface_index.front();
-    }
-    return tables;
-}
-
-Diffraction transport_model(DiffractionModel model) {
-    switch (model) {
-        case DiffractionModel::ewald_fresnel:
-            return Diffraction::ewald_fresnel;
-        case DiffractionModel::laue:
-            return Diffraction::laue;
-        case DiffractionModel::none:
-            return Diffraction::none;
-        case DiffractionModel::two_beam:
-            break;
-    }
-    return Diffraction::two_beam;
-}
-
 SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
+}
+
+/// Wavelengths are drawn for all the light there is where the camera looks.
+SpectrumTablesData make_spectra(const SceneDescription& description, const EnvironmentMap& environment, const LightData& lights) {
+    SpectrumTableOptions options;
+    options.illuminant = illuminant_of(description.environment);
+    options.upsampling = description.color.upsampling;
+    options.alias = description.render.sampler == SamplerKind::independent;
+    std::vector<double> light = lights.spectrum_at(to_vec3(description.camera.target_mm));
+    const std::vector<double> white = colorimetric_table(options.illuminant);
+    const double environment_share = double(environment_importance({nullptr, 0, environment.mean_luminance}));
+    double total = 0.0;
+    for (std::size_t i = 0; i < light.size(); ++i) total += light[i] += environment_share * white[i];
+    if (total > 0.0) options.drawn_light = std::move(light);
+    return make_spectrum_tables(options);
+}
+
+PathSampler path_sampler(SamplerKind kind) {
+    switch (kind) {
+        case SamplerKind::sobol:
+            return PathSampler::sobol;
+        case SamplerKind::stratified:
+            return PathSampler::stratified;
+        case SamplerKind::independent:
+            break;
+    }
+    return PathSampler::independent;
+}
+
+LightSampling light_sampling(LightSamplingKind kind) {
+    switch (kind) {
+        case LightSamplingKind::connections:
+            return LightSampling::connections;
+        case LightSamplingKind::scattering:
+            return LightSampling::scattering;
+        case LightSamplingKind::both:
+            break;
+    }
+    return LightSampling::both;
 }
 
 }  // namespace
@@ -97,24 +82,28 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
-    : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
-                                     description.render.sampler == SamplerKind::independent})),
-      environment_(make_environment(description.environment, description.color.upsampling)) {
+    : environment_(make_environment(description.environment, description.color.upsampling)),
+      lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
+      spectra_(make_spectra(description, environment_, lights_)) {
     for (const MaterialDescription& material : description.materials)
-        materials_.push_back({upsample_reflectance(
-            spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])})});
+        materials_.push_back({MaterialModel::diffuse,
+                              upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),
+                                                                         float(material.albedo[2])})});
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
             add_opal(object, description.opal, notices);
         else
             add_mesh(object, description.materials);
     }
-    for (const MeshData& mesh : meshes_) mesh_views_.push_back(mesh.view());
-
     const RenderDescription& render = description.render;
     view_.camera = make_camera(description.camera, render.width, render.height);
+    order_bodies();
+    for (const MeshData& mesh : meshes_) mesh_views_.push_back(mesh.view());
+    view_.bodies = bodies_.data();
     view_.spectra = spectra_.view();
     view_.environment = environment_.view();
+    view_.lights = lights_.view();
+    require_lights_outside(description.lights);
     view_.meshes = mesh_views_.data();
     view_.materials = materials_.data();
     view_.width = render.width;
@@ -122,70 +111,74 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.max_bounces = render.max_bounces;
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
-    view_.stratified = render.sampler == SamplerKind::stratified;
+    view_.sampler = path_sampler(render.sampler);
+    view_.light_sampling = light_sampling(render.light_sampling);
     view_.tent_filter = render.filter == FilterKind::tent;
 }
 
 void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
-    ReadOpalOptions options;
-    options.orientation_seed = object.orientation_seed;
-    std::vector<std::string> file_notices;
-    const OpalAsset asset = read_opal_asset(object.file, options, file_notices);
-    const std::string file = object.file.string();
-    for (const std::string& notice : file_notices) notices.push_back(file + ": " + notice);
-    if (!asset.grain_id)
-        throw InputError(file +
-                         ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
+    opals_.push_back(std::make_unique<OpalBody>(object, settings, notices));
+    meshes_.push_back(opals_.back()->take_surface());
+    add_body(opals_.back()->view(), object.priority);
+}
 
-    OpalView& opal = view_.opal;
-    opal.present = true;
-    opal.diffraction = transport_model(settings.diffraction);
-    opal.ewald_tolerance = float(settings.ewald_tolerance);
-    opal.max_odds = float(settings.max_odds);
-    opal.world_from_object = object_transform(object);
+/// The last mesh bounds it.
+void HostScene::add_body(const OpalView& view, int priority) {
+    if (bodies_.size() == std::size_t(max_bodies))
+        throw InputError(fmt::format("the scene has more than {} transparent objects", max_bodies));
+    meshes_.back().body = int(bodies_.size());
+    bodies_.push_back(view);
+    priorities_.push_back(priority);
+}
 
-    meshes_.push_back(surface_from_level_set(*asset.shape, file));
-    transform_mesh(meshes_.back(), opal.world_from_object);
-
-    grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
-    opal.grains = grains_->field();
-    shape_ = std::make_unique<FieldGridData>(*asset.shape);
-    opal.shape = shape_->view();
-    for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
-    opal.orientations = orientations_.data();
-
-    recipe_toml_ = asset.recipe_toml;
-    const OpalConstants& constants = asset.constants;
-    optics_ = optical_tables(constants, settings.dispersion);
-    opal.n_eff = optics_.n_eff.data();
-    opal.contrast = optics_.contrast.data();
-    opal.relative_index = optics_.relative_index.data();
-    opal.surface_index = optics_.surface_index.data();
-    opal.surface_disperses = optics_.surface_disperses;
-    opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
-    opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
-    opal.fault = float(constants.stacking_fault_probability);
-    opal.layer_nm = float(stacked_layer_nm(constants.sphere_diameter_nm));
-    if (constants.mosaic_spread_deg > 0.0)
-        opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
-    grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
-    opal.grain_size_mm = grain_size_mm_.data();
-
-    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(opal.world_from_object.scale), file);
-    medium_fields_->attach(opal.medium);
-    const double sigma_a_scale = medium_fields_->constant(MediumField::sigma_a_scale);
-    const double sigma_s_mie_per_mm = medium_fields_->constant(MediumField::sigma_s_mie);
-    for (int i = 0; i < spectrum_samples; ++i) {
-        const double wavelength_nm = units::wavelength_min_nm + i;
-        sigma_a_per_mm_.push_back(float(sigma_a_scale * constants.sigma_a_per_mm.at(wavelength_nm)));
-        const SampledSpectrum& shape = constants.sigma_s_mie_shape;
-        sigma_s_mie_per_mm_.push_back(float(sigma_s_mie_per_mm * (shape.value.empty() ? 1.0 : shape.at(wavelength_nm))));
+/// Numbers the bodies by their priorities: of equal ones the later in the scene wins.
+void HostScene::order_bodies() {
+    std::vector<int> order(bodies_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return priorities_[a] < priorities_[b]; });
+    std::vector<OpalView> ordered;
+    std::vector<int> rank(bodies_.size());
+    for (const int body : order) {
+        rank[body] = int(ordered.size());
+        ordered.push_back(bodies_[body]);
     }
-    opal.medium.sigma_a_per_mm = sigma_a_per_mm_.data();
-    opal.medium.sigma_s_rayleigh_400nm_per_mm = float(medium_fields_->constant(MediumField::sigma_s_rayleigh_400nm));
-    opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
-    if (sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
-    opal.medium.mie_phase = mie_phase_.view();
+    bodies_ = std::move(ordered);
+    for (MeshData& mesh : meshes_)
+        if (mesh.body >= 0) mesh.body = rank[mesh.body];
+    for (const MeshData& mesh : meshes_) {
+        if (mesh.body < 0) continue;
+        // The level set tells how far its own surface is, nothing of others.
+        OpalView& body = bodies_[mesh.body];
+        for (const MeshData& other : meshes_)
+            if (&other != &mesh && reaches_inside(other, body)) body.shape.grid = nullptr;
+        if (encloses(mesh, view_.camera.position)) view_.camera_bodies = view_.camera_bodies.entered(mesh.body);
+    }
+}
+
+void HostScene::require_lights_outside(const std::vector<LightDescription>& lights) const {
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        for (const MeshData& mesh : meshes_)
+            if (lights[i].kind != LightKind::sun && mesh.body >= 0 && encloses(mesh, to_vec3(lights[i].position_mm)))
+                throw InputError(
+                    fmt::format("light.{}: stands at [{}, {}, {}] inside a transparent object; lights must be outside", i,
+                                lights[i].position_mm[0], lights[i].position_mm[1], lights[i].position_mm[2]));
+}
+
+const std::string& HostScene::recipe_toml() const {
+    static const std::string none;
+    return opals_.empty() ? none : opals_.front()->recipe_toml();
+}
+
+std::size_t HostScene::num_grains() const {
+    std::size_t sum = 0;
+    for (const auto& opal : opals_) sum += opal->num_grains();
+    return sum;
+}
+
+int HostScene::reciprocal_points() const {
+    int most = 0;
+    for (const auto& opal : opals_) most = std::max(most, opal->reciprocal_points());
+    return most;
 }
 
 void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {

@@ -8,20 +8,12 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
-#include "renderer/host/field_grid.h"
-#include "renderer/host/grain_grid.h"
-#include "renderer/host/medium_fields.h"
+#include "renderer/host/light_data.h"
 #include "renderer/host/mesh_data.h"
-#include "renderer/host/phase_function.h"
+#include "renderer/host/opal_body.h"
 #include "renderer/host/spectrum_tables.h"
 
 namespace opal {
-
-/// The opal's optical constants in steps of 1 nm.
-struct OpticalTables {
-    std::vector<float> n_eff, contrast, relative_index, surface_index;
-    bool surface_disperses = false;
-};
 
 /// Everything a scene needs in memory, and the plain view of it that the transport reads. Not movable: the view points inside.
 class HostScene {
@@ -35,31 +27,29 @@ class HostScene {
     const std::vector<MeshData>& meshes() const { return meshes_; }
     const EnvironmentMap& environment() const { return environment_; }
 
-    /// Reciprocal-lattice points inside the limiting sphere, the origin counted; 0 without an opal.
-    int reciprocal_points() const { return reciprocal_points_; }
-    std::size_t num_grains() const { return orientations_.size(); }
-    /// The recipe that the opal's file carries; empty for files made elsewhere.
-    const std::string& recipe_toml() const { return recipe_toml_; }
+    /// Of the opal that has most; see OpalBody.
+    int reciprocal_points() const;
+    /// Of all opals together.
+    std::size_t num_grains() const;
+    /// Of the first opal; empty without one, and for files made elsewhere.
+    const std::string& recipe_toml() const;
 
   private:
     void add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices);
+    void add_body(const OpalView& view, int priority);
+    void order_bodies();
+    void require_lights_outside(const std::vector<LightDescription>& lights) const;
     void add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials);
 
-    SpectrumTablesData spectra_;
     EnvironmentMap environment_;
-    std::vector<DiffuseMaterial> materials_;
+    LightData lights_;
+    SpectrumTablesData spectra_;
+    std::vector<MaterialView> materials_;
     std::vector<MeshData> meshes_;
     std::vector<MeshView> mesh_views_;
-    std::unique_ptr<GrainGridData> grains_;
-    std::vector<Quaternion> orientations_;
-    std::vector<float> grain_size_mm_;
-    OpticalTables optics_;
-    std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
-    std::unique_ptr<FieldGridData> shape_;
-    std::unique_ptr<MediumFields> medium_fields_;
-    PhaseFunction mie_phase_;
-    int reciprocal_points_ = 0;
-    std::string recipe_toml_;
+    std::vector<std::unique_ptr<OpalBody>> opals_;
+    std::vector<OpalView> bodies_;
+    std::vector<int> priorities_;  ///< of the bodies, in the scene's order
     SceneView view_;
 };
 

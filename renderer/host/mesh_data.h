@@ -16,8 +16,11 @@ struct MeshData {
     std::vector<Vec3> normals;
     std::vector<std::uint32_t> indices;
     int material = -1;
+    int body = -1;
 
-    MeshView view() const { return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material}; }
+    MeshView view() const {
+        return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material, body};
+    }
 };
 
 /// A square of edge `size_mm` at z = 0, facing up.

@@ -57,6 +57,35 @@ TEST(Colorimetry, LabOfKnownColors) {
     EXPECT_NEAR(delta_e_76({50, 3, 4}, {50, 0, 0}), 5.0, 1e-12);
 }
 
+/// Pairs of Sharma, Wu and Dalal (2005), table 1, which reach every branch of the formula.
+TEST(Colorimetry, ColorDifferenceCiede2000) {
+    struct Pair {
+        Lab first, second;
+        double difference;
+    };
+    const Pair pairs[] = {{{50, 2.6772, -79.7751}, {50, 0, -82.7485}, 2.0425},
+                          {{50, 3.1571, -77.2803}, {50, 0, -82.7485}, 2.8615},
+                          {{50, -1.3802, -84.2814}, {50, 0, -82.7485}, 1.0000},
+                          {{50, 0, 0}, {50, -1, 2}, 2.3669},
+                          {{50, 2.4900, -0.0010}, {50, -2.4900, 0.0009}, 7.1792},
+                          {{50, 2.4900, -0.0010}, {50, -2.4900, 0.0011}, 7.2195},
+                          {{50, 2.5, 0}, {50, 0, -2.5}, 4.3065},
+                          {{50, 2.5, 0}, {73, 25, -18}, 27.1492},
+                          {{50, 2.5, 0}, {61, -5, 29}, 22.8977},
+                          {{50, 2.5, 0}, {56, -27, -3}, 31.9030},
+                          {{50, 2.5, 0}, {58, 24, 15}, 19.4535},
+                          {{60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644},
+                          {{63.0109, -31.0961, -5.8663}, {62.8187, -29.7946, -4.0864}, 1.2630},
+                          {{22.7233, 20.0904, -46.6940}, {23.0331, 14.9730, -42.5619}, 2.0373},
+                          {{90.8027, -2.0831, 1.4410}, {91.1528, -1.6435, 0.0447}, 1.4441},
+                          {{2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}, 0.9082}};
+    for (const Pair& pair : pairs) {
+        EXPECT_NEAR(delta_e_2000(pair.first, pair.second), pair.difference, 0.5e-4);
+        EXPECT_NEAR(delta_e_2000(pair.second, pair.first), pair.difference, 0.5e-4);
+    }
+    EXPECT_EQ(delta_e_2000({50, 3, 4}, {50, 3, 4}), 0.0);
+}
+
 /// Standard illuminants: A 2856 K on the locus; D65 6504 K, Duv +0.0032 (CIE 015; ANSI C78.377 gives 6504 K and 0.0032).
 TEST(Colorimetry, CorrelatedColorTemperatures) {
     const CorrelatedColorTemperature a = correlated_color_temperature({0.44758, 0.40745});
@@ -71,6 +100,7 @@ TEST(Colorimetry, SrgbEncoding) {
     EXPECT_NEAR(srgb_encoded(0.002), 0.02584, 1e-9);
     EXPECT_NEAR(srgb_encoded(0.18), 0.46135612950044164, 1e-9);
     EXPECT_NEAR(srgb_encoded(1.0), 1.0, 1e-12);
+    for (const double linear : {0.0, 0.002, 0.18, 1.0}) EXPECT_NEAR(srgb_decoded(srgb_encoded(linear)), linear, 1e-12);
 }
 
 }  // namespace

@@ -39,8 +39,10 @@ TEST(Fresnel, InterpolatedNormalsNeverSendARayThroughTheWrongSide) {
         for (float angle = -1.55f; angle < 1.55f; angle += 0.05f)
             for (const float side : {-1.0f, 1.0f}) {
                 const Vec3 direction{sinf(angle), 0.0f, side * cosf(angle)};
-                const float index[1] = {1.42f};
-                const DielectricSplit<1> split = split_dielectric<1>(direction, surface, index);
+                const float opal[1] = {1.42f}, air[1] = {1.0f};
+                const bool entering = side < 0.0f;
+                const DielectricSplit<1> split =
+                    split_dielectric<1>(direction, surface, entering ? air : opal, entering ? opal : air);
                 EXPECT_NEAR(length(split.reflected), 1.0f, 1e-5f);
                 EXPECT_LT(split.reflected.z * direction.z, 0.0f);
                 EXPECT_GE(split.reflectance[0], 0.0f);

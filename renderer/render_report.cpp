@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/render_report.h"
+
+#include <cmath>
+
+#include "formats/report.h"
+
+namespace opal {
+namespace {
+
+nlohmann::json spectrum_report(const SpectrumTotals& totals, const SpectrumTables& tables) {
+    nlohmann::json bins = nlohmann::json::array();
+    const double n = std::max<double>(1.0, double(totals.samples));
+    for (int bin = 0; bin < num_bins; ++bin) {
+        // Mean of the white over the bin, so that a white furnace reports 1.
+        double white = 0.0;
+        int count = 0;
+        for (double wavelength = std::max(360.0, bin_centre_nm(bin) - 5.0);
+             wavelength <= std::min(830.0, bin_centre_nm(bin) + 5.0); wavelength += 0.25, ++count)
+            white += double(table_at(tables.white, float(wavelength)));
+        white /= count;
+        const double mean = totals.radiance[bin] / n;
+        const double variance = std::max(0.0, totals.radiance_squared[bin] / n - mean * mean) / std::max(1.0, n - 1.0);
+        bins.push_back({{"wavelength_nm", bin_centre_nm(bin)},
+                        {"radiance_over_white", mean / white},
+                        {"standard_error", std::sqrt(variance) / white},
+                        {"truncated", totals.truncated[bin] / n}});
+    }
+    return bins;
+}
+
+}  // namespace
+
+nlohmann::json render_report(const SceneDescription& scene, const HostScene& host, const RenderOutcome& outcome, const Film& film,
+                             double loading_s, int threads) {
+    const PathCounters& counters = outcome.counters;
+    const std::uint64_t samples = film.total_samples();
+    return {{"seconds", {{"loading", loading_s}, {"rendering", outcome.seconds}}},
+            {"peak_memory_bytes", peak_memory_bytes()},
+            {"threads", threads},
+            {"seed", scene.render.seed},
+            {"interrupted", outcome.interrupted},
+            {"counts",
+             {{"samples", samples},
+              {"samples_per_pixel", outcome.finished_samples},
+              {"grains", host.num_grains()},
+              {"reciprocal_points", host.reciprocal_points()},
+              {"grain_crossings", counters.grain_crossings},
+              {"diffractions_back", counters.turns_back},
+              {"multi_beam_stays", counters.multi_beam_stays},
+              {"diffractions", counters.diffractions},
+              {"scatterings", counters.scatterings},
+              {"truncated_paths", counters.truncated_paths},
+              {"lost_paths", counters.lost_paths},
+              {"not_a_number", counters.not_a_number},
+              {"majorant_violations", counters.majorant_violations}}},
+            {"paths_per_second", double(samples) / std::max(1.0e-9, outcome.seconds)},
+            {"truncated_rgb",
+             {outcome.totals.truncated_rgb[0] / double(samples), outcome.totals.truncated_rgb[1] / double(samples),
+              outcome.totals.truncated_rgb[2] / double(samples)}},
+            {"spectrum", spectrum_report(outcome.totals, host.view().spectra)},
+            {"versions", version_report()},
+            {"scene", scene_to_toml(scene)}};
+}
+
+}  // namespace opal
