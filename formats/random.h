@@ -60,7 +60,6 @@ enum class RandomStream : std::uint32_t {
     site_orientations = 13,
     bench = 14,
     sobol_scramble = 15,
-    photons = 16,
 };
 
 /// Block of four words for (seed, stream, index, block); the dimension is 4 * block + word.

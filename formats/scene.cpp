@@ -44,6 +44,7 @@ RenderDescription read_render(TomlSection section) {
     render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
     render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
     render.light_sampling = enum_choice(section, "light_sampling", render.light_sampling, light_sampling_names);
+    render.guided = section.boolean("guided", render.guided);
     render.filter = enum_choice(section, "filter", render.filter, filter_names);
     section.finish();
     return render;
@@ -227,10 +228,11 @@ std::string scene_to_toml(const SceneDescription& scene) {
     const RenderDescription& render = scene.render;
     const CameraDescription& camera = scene.camera;
     std::string text = fmt::format(
-        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nlight_sampling = "
-        "\"{}\"\nfilter = \"{}\"\n",
+        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = \"{}\"\n",
         render.width, render.height, render.samples, render.max_bounces, render.seed, name(sampler_names, render.sampler),
-        name(light_sampling_names, render.light_sampling), name(filter_names, render.filter));
+        name(filter_names, render.filter));
+    text +=
+        fmt::format("light_sampling = \"{}\"\nguided = {}\n", name(light_sampling_names, render.light_sampling), render.guided);
     text += fmt::format(
         "\n[camera]\nkind = \"{}\"\nposition_mm = {}\ntarget_mm = {}\nup = {}\nvertical_fov_deg = {}\nview_height_mm = {}\n"
         "aperture_radius_mm = {}\nfocus_mm = {}\n",

@@ -31,6 +31,7 @@ struct RenderDescription {
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;
     LightSamplingKind light_sampling = LightSamplingKind::both;
+    bool guided = true;  ///< scattered light is drawn towards where photons came from
     FilterKind filter = FilterKind::tent;
 };
 

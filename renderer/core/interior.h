@@ -3,6 +3,7 @@
 
 #include "renderer/core/ewald_turn.h"
 #include "renderer/core/grain_visit.h"
+#include "renderer/core/guided_scattering.h"
 #include "renderer/core/medium_flight.h"
 
 /// Transport inside the opal: grains met one after another, each with its planes; scattering and absorption on the way.
@@ -153,7 +154,11 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
     if (flight.scattered()) {
         ++counters.scatterings;
         event.kind = InteriorEventKind::scattering;
-        event.direction = scatter_direction(opal.medium, wavelengths, flight.local(), ray.direction, weights, random);
+        const Vec3 position = ray.origin + event.distance_mm * ray.direction;
+        event.direction = opal.guide.cdf
+                              ? guided_scatter_direction(opal.medium, opal.guide, position, wavelengths, flight.local(),
+                                                         ray.direction, weights, random)
+                              : scatter_direction(opal.medium, wavelengths, flight.local(), ray.direction, weights, random);
         visit.renew();
     }
     return event;

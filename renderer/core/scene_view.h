@@ -6,6 +6,7 @@
 #include "renderer/core/environment.h"
 #include "renderer/core/field_lookup.h"
 #include "renderer/core/grain_walk.h"
+#include "renderer/core/light_guide.h"
 #include "renderer/core/lights.h"
 #include "renderer/core/material.h"
 #include "renderer/core/medium.h"
@@ -50,6 +51,7 @@ struct OpalView {
     float max_odds = 400.0f;        ///< where the odds of reflection over a grain's size saturate
     float ewald_tolerance = 0.01f;
     MediumView medium;
+    LightGuideView guide;  ///< where scattered light comes from; may be none
 };
 
 /// Optical constants of the opal at the wavelengths of a path.

@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "formats/command.h"
+#include "renderer/cpu/light_guides.h"
 
 namespace opal {
 namespace {
@@ -31,9 +32,8 @@ struct TileSums {
 };
 
 template <int N>
-void render_tile(const HostScene& scene, const EmbreeScene& intersector, int tile, int first_sample, int end_sample, Film& film,
+void render_tile(const SceneView& view, const EmbreeScene& intersector, int tile, int first_sample, int end_sample, Film& film,
                  TileSums& sums) {
-    const SceneView& view = scene.view();
     const int tiles_across = (view.width + tile_size - 1) / tile_size;
     const int x0 = tile % tiles_across * tile_size, y0 = tile / tiles_across * tile_size;
     for (int y = y0; y < std::min(y0 + tile_size, view.height); ++y)
@@ -68,21 +68,22 @@ int pass_size(int done, double elapsed_s, double time_limit_s) {
 
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
                          const std::function<void(double)>& progress) {
-    const SceneView& view = scene.view();
+    const Stopwatch watch;
+    const LightGuides guides(scene, intersector);
+    const SceneView& view = guides.scene();
     const int tiles_across = (view.width + tile_size - 1) / tile_size, tiles_down = (view.height + tile_size - 1) / tile_size;
     const int num_tiles = tiles_across * tiles_down;
     std::vector<TileSums> sums(static_cast<std::size_t>(num_tiles));
     const double total_work = double(num_tiles) * limits.samples;
     std::atomic<std::int64_t> work_done = 0;
     const TileRenderer render = tile_renderer(view.wavelengths);
-    const Stopwatch watch;
     RenderOutcome outcome;
 
     for (int done = 0; done < limits.samples && !outcome.interrupted;) {
         const int end = std::min(limits.samples, done + pass_size(done, watch.seconds(), limits.time_s));
         tbb::parallel_for(tbb::blocked_range<int>(0, num_tiles, 1), [&](const tbb::blocked_range<int>& range) {
             for (int tile = range.begin(); tile != range.end() && !interrupt_requested(); ++tile) {
-                render(scene, intersector, tile, done, end, film, sums[std::size_t(tile)]);
+                render(view, intersector, tile, done, end, film, sums[std::size_t(tile)]);
                 work_done += end - done;
                 const double by_time = limits.time_s > 0.0 ? watch.seconds() / limits.time_s : 0.0;
                 progress(std::min(1.0, std::max(double(work_done) / total_work, by_time)));

@@ -84,7 +84,8 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
     : environment_(make_environment(description.environment, description.color.upsampling)),
       lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
-      spectra_(make_spectra(description, environment_, lights_)) {
+      spectra_(make_spectra(description, environment_, lights_)),
+      guided_(description.render.guided) {
     for (const MaterialDescription& material : description.materials)
         materials_.push_back({MaterialModel::diffuse,
                               upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),

@@ -26,6 +26,9 @@ class HostScene {
     const SceneView& view() const { return view_; }
     const std::vector<MeshData>& meshes() const { return meshes_; }
     const EnvironmentMap& environment() const { return environment_; }
+    std::size_t num_bodies() const { return bodies_.size(); }
+    /// Whether scattered light is to be drawn towards where light comes from.
+    bool guided() const { return guided_; }
 
     /// Of the opal that has most; see OpalBody.
     int reciprocal_points() const;
@@ -50,6 +53,7 @@ class HostScene {
     std::vector<std::unique_ptr<OpalBody>> opals_;
     std::vector<OpalView> bodies_;
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
+    bool guided_;
     SceneView view_;
 };
 

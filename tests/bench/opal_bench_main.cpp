@@ -7,6 +7,7 @@
 #include <string>
 
 #include "color_bench.h"
+#include "convergence_bench.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -63,6 +64,10 @@ int run_bench(int argc, char** argv) {
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
     color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    CLI::App* const convergence =
+        app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
+    convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -72,6 +77,10 @@ int run_bench(int argc, char** argv) {
     }
     if (color->parsed()) {
         opal::bench_color(arguments.folder);
+        return 0;
+    }
+    if (convergence->parsed()) {
+        opal::bench_convergence(arguments.folder, arguments.quick);
         return 0;
     }
     if (media->parsed()) return run_media(arguments.folder);
