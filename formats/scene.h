@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace opal {
 
 enum class SamplerKind { sobol, stratified, independent };
 enum class LightSamplingKind { both, connections, scattering };
-enum class FilterKind { tent, box };
+enum class FilterKind { tent, box, gaussian, blackman_harris };
 enum class CameraKind { perspective, orthographic };
 enum class EnvironmentKind { studio, constant, file };
 enum class IlluminantKind { d65, a, equal_energy, blackbody, led, file };
@@ -21,18 +22,35 @@ enum class Dispersion { full, bands, none };
 enum class LightKind { area, sphere, spot, sun };
 enum class MajorantKind { local, global };
 enum class MaterialKind { diffuse };
+/// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
+/// values linear, cut at 1.
+enum class ToneCurve { filmic, srgb, none };
 enum class ObjectKind { opal, mesh, plane, sphere, cylinder };
+
+/// Pixels [x0, x1) x [y0, y1) of a picture.
+struct PixelWindow {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+    bool operator==(const PixelWindow&) const = default;
+};
 
 struct RenderDescription {
     int width = 960;
     int height = 720;
     int samples = 256;
+    double noise = 0.0;  ///< relative error of luminance and chroma at which a place gets no more samples; 0: samples everywhere
     int max_bounces = 64;
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;
     LightSamplingKind light_sampling = LightSamplingKind::both;
     bool guided = true;  ///< scattered light is drawn towards where photons came from
     FilterKind filter = FilterKind::tent;
+    double filter_radius_px = 1.0;
+    std::optional<PixelWindow> crop;  ///< the part of the picture that is drawn; unset: all
+
+    PixelWindow window() const { return crop ? *crop : PixelWindow{0, 0, width, height}; }
 };
 
 struct CameraDescription {
@@ -50,7 +68,9 @@ struct FilmDescription {
     bool spectral = false;  ///< 48 layers of 10 nm beside the RGB
     std::vector<std::string> aovs;
     double exposure_ev = 0.0;
-    IlluminantKind white = IlluminantKind::d65;  ///< what is shown as white; d65, a or equal_energy
+    IlluminantKind white = IlluminantKind::d65;  ///< what is shown as white; d65, a, equal_energy or blackbody
+    double white_temperature_k = 6500.0;         ///< blackbody
+    ToneCurve tone = ToneCurve::filmic;
 };
 
 struct EnvironmentDescription {
@@ -104,6 +124,7 @@ struct MaterialDescription {
 
 struct ObjectDescription {
     ObjectKind kind = ObjectKind::opal;
+    std::string name;            ///< by which an animation refers to it
     std::filesystem::path file;  ///< opal: the .vdb; mesh: OBJ, PLY, STL or glTF
     std::string material;        ///< name of a [[material]]; unused for an opal
     std::array<double, 3> translate_mm = {0.0, 0.0, 0.0};
@@ -122,6 +143,17 @@ struct ColorDescription {
     Upsampling upsampling = Upsampling::jakob_hanika;
 };
 
+/// Steady turns from frame to frame; the first frame is the scene as it stands. Angles are counter-clockwise about +Z, seen from
+/// above.
+struct AnimationDescription {
+    int frames = 1;
+    double turntable_deg = 0.0;                  ///< per frame, about the vertical axis through `center_mm`
+    std::vector<std::string> turntable_objects;  ///< names; empty: every opal
+    std::array<double, 3> center_mm = {0.0, 0.0, 0.0};
+    double light_sweep_deg = 0.0;   ///< per frame, of the environment
+    double camera_orbit_deg = 0.0;  ///< per frame, about the vertical axis through the camera's target
+};
+
 /// What opal-render draws: a validated scene.toml.
 struct SceneDescription {
     RenderDescription render;
@@ -133,6 +165,7 @@ struct SceneDescription {
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;
     std::vector<LightDescription> lights;
+    AnimationDescription animation;
 };
 
 /// Reads and validates. Throws InputError located at file:line:column.

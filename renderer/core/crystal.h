@@ -23,6 +23,27 @@ inline constexpr int max_plane_pairs = 16384;
 /// Pairs that one grain crossing may test: a bit each in the path's "already tested" mask.
 inline constexpr int max_tested_pairs = 64;
 
+static_assert(max_tested_pairs % 8 == 0, "families are read in blocks");
+
+/// The same families side by side, as vector units read them; `form` is 0 beyond the last.
+struct PlaneFamilies {
+    float normal_x[max_tested_pairs] = {}, normal_y[max_tested_pairs] = {}, normal_z[max_tested_pairs] = {};
+    float g_per_nm[max_tested_pairs] = {};
+    float form[max_tested_pairs] = {};
+    float coherence_nm[max_tested_pairs] = {};
+    float twin[max_tested_pairs] = {};
+
+    void set(int k, const PlanePair& pair) {
+        normal_x[k] = pair.normal.x;
+        normal_y[k] = pair.normal.y;
+        normal_z[k] = pair.normal.z;
+        g_per_nm[k] = pair.g_per_nm;
+        form[k] = pair.form;
+        coherence_nm[k] = pair.coherence_nm;
+        twin[k] = float(pair.twin);
+    }
+};
+
 struct CrystalParameters {
     double sphere_diameter_nm = 250.0;
     double n_sphere = 1.45;

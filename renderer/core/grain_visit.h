@@ -93,34 +93,47 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
     rates.direction = direction;
     for (int i = 0; i < N; ++i) rates.total_per_mm[i] = 0.0f;
     if (opal.diffraction == Diffraction::ewald_fresnel) return;  // turns at boundaries alone
-    for (int k = 0; k < opal.num_pairs; ++k) {
-        const PlanePair& pair = opal.pairs[k];
-        const float cosine = fabsf(dot(lattice_direction, pair.normal));
-        if (cosine < 1.0e-4f) continue;
-        const BeamGeometry beam{cosine,
-                                pair.g_per_nm,
-                                pair.form,
-                                min_of(visit.block_nm, visit.block_factor * pair.coherence_nm),
-                                ((visit.p_polarized >> k) & 1u) != 0,
-                                pair.twin == 0 ? 1.0f : 0.5f * (1.0f + float(pair.twin) * visit.own_excess)};
-        float* rate_per_mm = rates.rate_per_mm[rates.count];
-        const bool any = opal.diffraction == Diffraction::laue
-                             ? laue_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm)
-                             : reflection_rates(beam, optics, visit.max_rate_per_mm, rate_per_mm);
-        if (!any) continue;
-        for (int i = 0; i < N; ++i) rates.total_per_mm[i] += rate_per_mm[i];
-        rates.pair[rates.count++] = k;
+    const PlaneFamilies& families = opal.families;
+    for (int first = 0; first < opal.num_pairs; first += beam_block_size) {
+        BeamBlock beams;
+        OPAL_SIMD
+        for (int j = 0; j < beam_block_size; ++j) {
+            const int k = first + j;
+            beams.cosine[j] = fabsf(lattice_direction.x * families.normal_x[k] + lattice_direction.y * families.normal_y[k] +
+                                    lattice_direction.z * families.normal_z[k]);
+            beams.g_per_nm[j] = families.g_per_nm[k];
+            beams.form[j] = beams.cosine[j] < 1.0e-4f ? 0.0f : families.form[k];
+            beams.block_nm[j] = min_of(visit.block_nm, visit.block_factor * families.coherence_nm[k]);
+            beams.polarized[j] = (visit.p_polarized >> k) & 1u ? 1.0f : 0.0f;
+            beams.share[j] = families.twin[k] == 0.0f ? 1.0f : 0.5f * (1.0f + families.twin[k] * visit.own_excess);
+        }
+        float block_rates[N][beam_block_size];
+        if (opal.diffraction == Diffraction::laue)
+            laue_rates(beams, optics, visit.max_rate_per_mm, block_rates);
+        else
+            reflection_rates(beams, optics, visit.max_rate_per_mm, block_rates);
+        for (int j = 0; j < beam_block_size; ++j) {
+            float sum = 0.0f;
+            for (int i = 0; i < N; ++i) sum += block_rates[i][j];
+            if (!(sum > 0.0f)) continue;
+            for (int i = 0; i < N; ++i) {
+                rates.rate_per_mm[rates.count][i] = block_rates[i][j];
+                rates.total_per_mm[i] += block_rates[i][j];
+            }
+            rates.pair[rates.count++] = first + j;
+        }
     }
 }
 
-/// Which family turns the hero, given that one does: chosen by its rate. Returns an index into the rates.
+/// Which family turns the hero, given that one does and that it is not family `other` (-1: any): by its rate; `rest` is drawn
+/// uniformly in [0, the sum of their rates). Returns an index into the rates; -1 if there is no such family.
 template <int N>
-OPAL_HD inline int choose_family(const GrainRates<N>& rates, float u) {
-    float rest = u * rates.total_per_mm[0];
+OPAL_HD inline int choose_family(const GrainRates<N>& rates, float rest, int other = -1) {
     int chosen = -1;
     for (int i = 0; i < rates.count; ++i) {
         const float rate = rates.rate_per_mm[i][0];
-        if (rate > 0.0f) chosen = i;  // rounding can carry `rest` past the last family; never onto one that does not turn
+        if (i == other || !(rate > 0.0f)) continue;
+        chosen = i;  // rounding can carry `rest` past the last family; never onto one that does not turn
         if (rest < rate) break;
         rest -= rate;
     }

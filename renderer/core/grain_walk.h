@@ -16,6 +16,18 @@ struct GrainField {
     Vec3 index_of_origin;        ///< index coordinates of the object's origin; voxel centres are at integers
 };
 
+/// A ball about a place (object mm) that holds no grain but `grain`: half a voxel where the voxels that such a ball can touch are
+/// all the grain's, else 0.
+OPAL_HD inline float grain_clearance_mm(const GrainField& field, Vec3 position_mm, int grain) {
+    // Voxels [i - 1/2, i + 1/2): a cube of edge one about the place touches those of the eight nearest centres.
+    const Vec3 index = field.voxels_per_mm * position_mm + field.index_of_origin;
+    const nanovdb::Coord low(int(floorf(index.x)), int(floorf(index.y)), int(floorf(index.z)));
+    nanovdb::DefaultReadAccessor<int32_t> accessor(field.grid->tree().root());
+    for (int k = 0; k < 8; ++k)
+        if (accessor.getValue(low + nanovdb::Coord(k >> 2, (k >> 1) & 1, k & 1)) != grain) return 0.0f;
+    return 0.49f / field.voxels_per_mm;
+}
+
 /// Hierarchical DDA: walks a ray through the tree of grain_id, one constant tile, empty node or voxel at a time. Each step leaves
 /// the box it is in through the exact face that the ray meets first, so no box is skipped and none is visited twice.
 class GrainWalk {

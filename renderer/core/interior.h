@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/beam_exchange.h"
 #include "renderer/core/ewald_turn.h"
 #include "renderer/core/grain_visit.h"
 #include "renderer/core/guided_scattering.h"
@@ -26,9 +27,9 @@ enum class InteriorEventKind { surface, diffraction, scattering };
 
 struct InteriorEvent {
     InteriorEventKind kind = InteriorEventKind::surface;
-    float distance_mm = 0.0f;
+    Vec3 position;  ///< world mm
     Vec3 direction;
-    bool turned_back = false;  ///< a diffraction into the direction before the last
+    bool turned_back = false;  ///< into one of the two directions that the light goes back and forth between
 };
 
 /// Two-beam theory speaks of one strong family at a time.
@@ -93,6 +94,47 @@ OPAL_HD inline float clearance_mm(const OpalView& opal, Vec3 position) {
     return max_of(0.0f, depth_mm - 1.0f / opal.shape.voxels_per_mm) * opal.world_from_object.scale;
 }
 
+/// Makes the event, whose position is known and whose direction is that before, a scattering.
+template <int N>
+OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wavelengths, const LaneMedium<N>& medium,
+                            GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random, PathCounters& counters,
+                            InteriorEvent& event) {
+    ++counters.scatterings;
+    event.kind = InteriorEventKind::scattering;
+    event.direction = opal.guide.cdf ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
+                                                                event.direction, weights, random)
+                                     : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
+    visit.renew();
+}
+
+/// Balls smaller than this are not worth it.
+inline constexpr float exchange_min_ball_mm = 1.0e-3f;
+
+/// Lets the light go back and forth between two beams within a ball of radius `ball_mm` about the ray's origin; no surface lies
+/// within `clear_mm`.
+template <int N>
+OPAL_HD inline InteriorEvent exchange_in_ball(const OpalView& opal, const PathWavelengths<N>& wavelengths,
+                                              const LaneMedium<N>& medium, const Ray& ray, float ball_mm, float clear_mm,
+                                              MediumFlight<N>& flight, GrainVisit<N>& visit, LaneWeights<N>& weights,
+                                              PathRandom& random, PathCounters& counters) {
+    const BeamExchange<N> exchange = exchange_beams(visit, ball_mm, flight.scatter_distance_mm(), weights, random);
+    flight.advance(exchange.path_mm, weights);
+    counters.diffractions += exchange.turns;
+    counters.turns_back += exchange.turns - (exchange.turned_by >= 0 ? 1 : 0);
+    InteriorEvent event{InteriorEventKind::diffraction, ray.origin + exchange.offset, visit.present().direction, true};
+    visit.clear_mm = max_of(0.0f, clear_mm - length(exchange.offset));
+    if (exchange.scattered) {
+        scatter(opal, wavelengths, medium, visit, weights, random, counters, event);
+    } else if (exchange.turned_by >= 0) {
+        const GrainRates<N>& rates = visit.present();
+        const float* rate_per_mm = rates.rate_per_mm[exchange.turned_by];
+        for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= rate_per_mm[i] / rate_per_mm[0];
+        event.direction = turn_visit(opal, visit, rates.pair[exchange.turned_by]);
+        event.turned_back = false;
+    }
+    return event;
+}
+
 /// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface. `surface.distance_mm()` finds
 /// that with a ray cast; it is asked only where the ray might get so far: inside a band the next turn is often some micrometres
 /// away.
@@ -102,11 +144,12 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                                             SurfaceProbe& surface, GrainVisit<N>& visit, LaneWeights<N>& weights,
                                             PathRandom& random, PathCounters& counters) {
     MediumFlight<N> flight(opal, medium, ray, weights, random, counters.majorant_violations);
-    InteriorEvent event{InteriorEventKind::surface, 0.0f, ray.direction, false};
+    InteriorEvent event{InteriorEventKind::surface, ray.origin, ray.direction, false};
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
         const float scale = opal.world_from_object.scale;
         const Vec3 direction = opal.world_from_object.local_from_world_direction(ray.direction);
-        GrainWalk walk(opal.grains, opal.world_from_object.local_from_world_point(ray.origin), direction);
+        const Vec3 walk_origin = opal.world_from_object.local_from_world_point(ray.origin);
+        GrainWalk walk(opal.grains, walk_origin, direction);
         float reached = 0.0f;  // object mm, like everything on the walk
         float entered_mm = 0.0f;
         if (visit.grain == 0) visit.enter(walk.next_grain(0, reached, surface.distance_mm() / scale));
@@ -118,7 +161,15 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             if (opal.diffraction == Diffraction::ewald_fresnel && visit.at_boundary &&
                 turn_at_boundary(opal, optics, ray.direction, direction, visit, weights, random, turned)) {
                 ++counters.diffractions;
-                return {InteriorEventKind::diffraction, entered_mm, turned, false};
+                return {InteriorEventKind::diffraction, ray.origin + entered_mm * ray.direction, turned, false};
+            }
+            if (entered_mm == 0.0f && flight.closed_form() && exchanges_beams(visit)) {
+                clear_mm = max_of(clear_mm, clearance_mm(opal, ray.origin));
+                clear_known = true;
+                const float ball_mm = min_of(clear_mm, scale * grain_clearance_mm(opal.grains, walk_origin, visit.grain));
+                if (ball_mm > exchange_min_ball_mm)
+                    return exchange_in_ball(opal, wavelengths, medium, ray, ball_mm, clear_mm, flight, visit, weights, random,
+                                            counters);
             }
             const GrainRates<N>& rates = visit.present();
             const float total_per_mm = rates.total_per_mm[0];
@@ -135,7 +186,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             pass_planes(rates, passed_mm - entered_mm, weights);
             if (flight.scattered()) break;
             if (turn_mm <= end_mm) {
-                const int family = choose_family(rates, random.next());
+                const int family = choose_family(rates, random.next() * total_per_mm);
                 for (int i = 1; i < weights.count; ++i)
                     weights.ratio.v[i] *= rates.rate_per_mm[family][i] / rates.rate_per_mm[family][0];
                 const int k = rates.pair[family];
@@ -143,24 +194,16 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                 ++counters.diffractions;
                 if (turned_back) ++counters.turns_back;
                 visit.clear_mm = max_of(0.0f, clear_mm - turn_mm);
-                return {InteriorEventKind::diffraction, turn_mm, turn_visit(opal, visit, k), turned_back};
+                return {InteriorEventKind::diffraction, ray.origin + turn_mm * ray.direction, turn_visit(opal, visit, k),
+                        turned_back};
             }
             if (next == 0 || end_mm >= surface_mm) break;
             visit.enter(next);
             entered_mm = end_mm;
         }
     }
-    event.distance_mm = flight.advance(surface.distance_mm(), weights);
-    if (flight.scattered()) {
-        ++counters.scatterings;
-        event.kind = InteriorEventKind::scattering;
-        const Vec3 position = ray.origin + event.distance_mm * ray.direction;
-        event.direction = opal.guide.cdf
-                              ? guided_scatter_direction(opal.medium, opal.guide, position, wavelengths, flight.local(),
-                                                         ray.direction, weights, random)
-                              : scatter_direction(opal.medium, wavelengths, flight.local(), ray.direction, weights, random);
-        visit.renew();
-    }
+    event.position = ray.origin + flight.advance(surface.distance_mm(), weights) * ray.direction;
+    if (flight.scattered()) scatter(opal, wavelengths, flight.local(), visit, weights, random, counters, event);
     return event;
 }
 

@@ -54,6 +54,11 @@ class MediumFlight {
         return end_mm;
     }
 
+    /// Whether nothing varies: then the flight need not be straight.
+    OPAL_HD bool closed_form() const { return !varies(); }
+    /// Of a flight in closed form: where it scatters.
+    OPAL_HD float scatter_distance_mm() const { return scatter_mm_; }
+
     /// Whether the flight ended by scattering at the distance that `advance` returned.
     OPAL_HD bool scattered() const { return reached_mm_ == scatter_mm_; }
 

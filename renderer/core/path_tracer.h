@@ -76,7 +76,7 @@ class PathTracer {
                         ++counters_.not_a_number;
                         return;
                     }
-                    ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
+                    ray = {event.position, event.direction};
                     connected_ = false;
                     // Going back and forth between two beams is one event, however many turns it takes.
                     if (!event.turned_back) ++bounce;
@@ -299,11 +299,8 @@ OPAL_HD PathResult<N> trace_sample(const SceneView& scene, const Intersector& in
                                    PathWavelengths<N>& wavelengths, PathCounters& counters) {
     PathRandom random(scene.seed, pixel, sample, scene.sampler);
     const PixelNumbers numbers = random.pixel_numbers();
-    float x = numbers.x, y = numbers.y;
-    if (scene.tent_filter) {
-        x = 0.5f + sample_tent(x);
-        y = 0.5f + sample_tent(y);
-    }
+    const float x = 0.5f + sample_pixel_filter(scene.filter, numbers.x);
+    const float y = 0.5f + sample_pixel_filter(scene.filter, numbers.y);
     wavelengths = sample_wavelengths<N>(scene.spectra, numbers.wavelength, scene.wavelengths);
     const bool lens = scene.camera.aperture_radius_mm > 0.0f;
     const float lens_u = lens ? random.next() : 0.0f, lens_v = lens ? random.next() : 0.0f;

@@ -81,10 +81,10 @@ OPAL_HD inline void trace_photon(const SceneView& scene, const Intersector& inte
         if (inside) {
             const InteriorEvent event =
                 cross_interior(opal, wavelengths, optics, medium, ray, ahead, visit, weights, random, counters);
-            deposit(ray.origin, ray.direction, event.distance_mm, photon.power * weights.throughput.v[0]);
+            deposit(ray.origin, ray.direction, length(event.position - ray.origin), photon.power * weights.throughput.v[0]);
             if (event.kind != InteriorEventKind::surface) {
                 if (!(dot(event.direction, event.direction) > 0.5f)) return;
-                ray = {ray.origin + event.distance_mm * ray.direction, event.direction};
+                ray = {event.position, event.direction};
                 continue;
             }
         }

@@ -12,6 +12,7 @@
 #include "renderer/core/medium.h"
 #include "renderer/core/nested_bodies.h"
 #include "renderer/core/path_random.h"
+#include "renderer/core/pixel_filter.h"
 #include "renderer/core/two_beam.h"
 
 /// Everything the transport reads: pointers and counts, the one thing that crosses to a device.
@@ -43,6 +44,7 @@ struct OpalView {
     const float* surface_index = nullptr;      ///< 1 nm table: effective index where light refracts
     bool surface_disperses = false;            ///< surface_index varies
     PlanePair pairs[max_tested_pairs];
+    PlaneFamilies families;  ///< of the pairs
     int num_pairs = 0;
     float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
     float fault = 0.0f;             ///< probability of a stacking fault per layer
@@ -90,7 +92,7 @@ struct SceneView {
     int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
     PathSampler sampler = PathSampler::stratified;
-    bool tent_filter = true;
+    PixelFilter filter;
 };
 
 /// What a ray met.

@@ -51,62 +51,72 @@ struct LaneOptics {
     float surface_index[N];   ///< at the opal's surface
 };
 
-/// One family of planes met at a given angle by light of one polarization: everything but the wavelength.
-struct BeamGeometry {
-    float cosine;        ///< |w . g|, direction of travel against the planes' normal
-    float g_per_nm;      ///< |G|
-    float form;          ///< |eps_G| over the contrast of permittivity
-    float block_nm;      ///< thickness of one coherent block along the normal
-    bool p_polarized;    ///< in the plane of incidence
-    float share = 1.0f;  ///< part of the path that lies in blocks which hold this family
+/// How many families of planes are looked at together: as many as a vector register of the host holds; a thread of a device takes
+/// them one by one.
+#if defined(__CUDA_ARCH__)
+inline constexpr int beam_block_size = 1;
+#else
+inline constexpr int beam_block_size = 8;
+#endif
+
+/// Families of planes met at given angles by light of one polarization each: everything but the wavelength.
+struct BeamBlock {
+    float cosine[beam_block_size];     ///< |w . g|, direction of travel against the planes' normal
+    float g_per_nm[beam_block_size];   ///< |G|
+    float form[beam_block_size];       ///< |eps_G| over the contrast of permittivity; 0: no family
+    float block_nm[beam_block_size];   ///< thickness of one coherent block along the normal
+    float polarized[beam_block_size];  ///< 1: p, in the plane of incidence; 0: s
+    float share[beam_block_size];      ///< part of the path that lies in blocks which hold this family
 };
 
-/// Rate (1/mm) at which light on its way through a pile of incoherently stacked blocks is turned by a family of planes, for every
-/// lane. A path of length l crosses M = l c / t blocks; walking back and forth between the two beams with the rate M r / (1 - r)
-/// / l gives the pile's reflectance M r / (1 + (M - 1) r) exactly. Coupling kappa = pi |eps_G| C / (n lambda c), C = 1 (s) or |1
-/// - 2 c^2| (p); detuning delta = 2 pi (n c / lambda - |G| / 2) = pi |G| (lambda_B / lambda - 1) (two-beam dynamical diffraction,
-/// Zachariasen 1945). More than an octave from the Bragg wavelength the two-beam picture (one strong G near its Bragg condition)
-/// does not hold, and grazing passes would get a coupling that grows without bound: nothing is reflected there. Rates saturate
-/// towards `max_rate_per_mm`, harmonically, so that light inside a band is not turned without end. Returns false where all are 0.
-/// The loops are free of branches and calls so that they vectorize; the few elements inside the band are mended afterwards.
-template <int N>
-OPAL_HD inline bool reflection_rates(const BeamGeometry& beam, const LaneOptics<N>& optics, float max_rate_per_mm,
-                                     float* rate_per_mm) {
-    const float bragg_over_n_nm = 2.0f * beam.cosine / beam.g_per_nm;
-    float ratio[N];
-    bool any_near = false;
-    for (int i = 0; i < N; ++i) {
-        ratio[i] = bragg_over_n_nm * optics.n_eff[i] / optics.wavelength_nm[i];
-        any_near = any_near || (ratio[i] >= 0.5f && ratio[i] <= 2.0f);
-    }
-    if (!any_near) return false;
+/// C of the coupling: 1 (s) or |1 - 2 c^2| (p).
+OPAL_HD inline float polarization_factor(float polarized, float cosine) {
+    return 1.0f - polarized + polarized * fabsf(1.0f - 2.0f * cosine * cosine);
+}
 
-    const float factor = beam.p_polarized ? fabsf(1.0f - 2.0f * beam.cosine * beam.cosine) : 1.0f;
-    const float coupling = pi_f * beam.form * factor * beam.block_nm / beam.cosine;
-    const float detuning = pi_f * beam.g_per_nm * beam.block_nm;
-    const float blocks_per_mm = beam.share * beam.cosine * 1.0e6f / beam.block_nm;
-    float kappa_t[N], delta_t[N], x2[N];
+/// Rates (1/mm) at which light on its way through a pile of incoherently stacked blocks is turned by families of planes, per lane
+/// and family. A path of length l crosses M = l c / t blocks; walking back and forth between the two beams with the rate M r / (1
+/// - r) / l gives the pile's reflectance M r / (1 + (M - 1) r) exactly. Coupling kappa = pi |eps_G| C / (n lambda c), C = 1 (s)
+/// or |1 - 2 c^2| (p); detuning delta = 2 pi (n c / lambda - |G| / 2) = pi |G| (lambda_B / lambda - 1) (two-beam dynamical
+/// diffraction, Zachariasen 1945). More than an octave from the Bragg wavelength the two-beam picture (one strong G near its
+/// Bragg condition) does not hold, and grazing passes would get a coupling that grows without bound: nothing is reflected there.
+/// Rates saturate towards `max_rate_per_mm`, harmonically, so that light inside a band is not turned without end. The loops over
+/// families are free of branches and calls so that they vectorize; the few elements inside a band are mended afterwards.
+template <int N>
+OPAL_HD inline void reflection_rates(const BeamBlock& beams, const LaneOptics<N>& optics, float max_rate_per_mm,
+                                     float (*rate_per_mm)[beam_block_size]) {
+    float bragg_over_n_nm[beam_block_size], coupling[beam_block_size], detuning[beam_block_size], blocks_per_mm[beam_block_size];
     OPAL_SIMD
-    for (int i = 0; i < N; ++i) {
-        const float near = ratio[i] >= 0.5f && ratio[i] <= 2.0f ? coupling : 0.0f;
-        kappa_t[i] = near * optics.contrast[i] / (optics.n_eff[i] * optics.wavelength_nm[i]);
-        delta_t[i] = detuning * (ratio[i] - 1.0f);
+    for (int j = 0; j < beam_block_size; ++j) {
+        const float cosine = max_of(beams.cosine[j], 1.0e-4f);
+        bragg_over_n_nm[j] = 2.0f * cosine / beams.g_per_nm[j];
+        coupling[j] = pi_f * beams.form[j] * polarization_factor(beams.polarized[j], cosine) * beams.block_nm[j] / cosine;
+        detuning[j] = pi_f * beams.g_per_nm[j] * beams.block_nm[j];
+        blocks_per_mm[j] = beams.share[j] * cosine * 1.0e6f / beams.block_nm[j];
     }
-    OPAL_SIMD
     for (int i = 0; i < N; ++i) {
-        const float kappa2 = kappa_t[i] * kappa_t[i];
-        x2[i] = delta_t[i] * delta_t[i] - kappa2;
-        const float outside = x2[i] < band_edge_x2 ? band_edge_x2 : x2[i];
-        rate_per_mm[i] = blocks_per_mm * kappa2 * sine_squared(sqrtf(outside)) / outside;
+        const float n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
+        const float strength = optics.contrast[i] / (optics.n_eff[i] * optics.wavelength_nm[i]);
+        float kappa_t[beam_block_size], delta_t[beam_block_size], x2[beam_block_size];
+        float smallest = 3.0e38f;
+        OPAL_SIMD
+        for (int j = 0; j < beam_block_size; ++j) {
+            const float ratio = bragg_over_n_nm[j] * n_over_lambda;
+            const float near = ratio >= 0.5f && ratio <= 2.0f ? coupling[j] : 0.0f;
+            kappa_t[j] = near * strength;
+            delta_t[j] = detuning[j] * (ratio - 1.0f);
+            const float kappa2 = kappa_t[j] * kappa_t[j];
+            x2[j] = delta_t[j] * delta_t[j] - kappa2;
+            const float outside = x2[j] < band_edge_x2 ? band_edge_x2 : x2[j];
+            rate_per_mm[i][j] = blocks_per_mm[j] * kappa2 * sine_squared(sqrtf(outside)) / outside;
+        }
+        for (int j = 0; j < beam_block_size; ++j) smallest = min_of(smallest, x2[j]);
+        if (smallest < band_edge_x2)
+            for (int j = 0; j < beam_block_size; ++j)
+                if (x2[j] < band_edge_x2) rate_per_mm[i][j] = blocks_per_mm[j] * block_reflection_odds(kappa_t[j], delta_t[j]);
+        OPAL_SIMD
+        for (int j = 0; j < beam_block_size; ++j) rate_per_mm[i][j] *= max_rate_per_mm / (max_rate_per_mm + rate_per_mm[i][j]);
     }
-    float smallest = x2[0];
-    for (int i = 1; i < N; ++i) smallest = min_of(smallest, x2[i]);
-    if (smallest < band_edge_x2)
-        for (int i = 0; i < N; ++i)
-            if (x2[i] < band_edge_x2) rate_per_mm[i] = blocks_per_mm * block_reflection_odds(kappa_t[i], delta_t[i]);
-    OPAL_SIMD
-    for (int i = 0; i < N; ++i) rate_per_mm[i] *= max_rate_per_mm / (max_rate_per_mm + rate_per_mm[i]);
-    return true;
 }
 
 }  // namespace opal

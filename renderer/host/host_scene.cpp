@@ -62,6 +62,11 @@ LightSampling light_sampling(LightSamplingKind kind) {
     return LightSampling::both;
 }
 
+/// The four kinds stand in the same order.
+PixelFilter pixel_filter(const RenderDescription& render) {
+    return {static_cast<PixelFilterKind>(render.filter), float(render.filter_radius_px)};
+}
+
 }  // namespace
 
 Camera make_camera(const CameraDescription& description, int width, int height) {
@@ -86,6 +91,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
       lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
       spectra_(make_spectra(description, environment_, lights_)),
       guided_(description.render.guided) {
+    tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
         materials_.push_back({MaterialModel::diffuse,
                               upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),
@@ -114,7 +120,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.seed = render.seed;
     view_.sampler = path_sampler(render.sampler);
     view_.light_sampling = light_sampling(render.light_sampling);
-    view_.tent_filter = render.filter == FilterKind::tent;
+    view_.filter = pixel_filter(render);
 }
 
 void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/command.h"
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
@@ -30,6 +31,9 @@ class HostScene {
     /// Whether scattered light is to be drawn towards where light comes from.
     bool guided() const { return guided_; }
 
+    /// What preparing the tables of light, colours and spectra took.
+    double tables_seconds() const { return tables_s_; }
+
     /// Of the opal that has most; see OpalBody.
     int reciprocal_points() const;
     /// Of all opals together.
@@ -44,6 +48,7 @@ class HostScene {
     void require_lights_outside(const std::vector<LightDescription>& lights) const;
     void add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials);
 
+    const Stopwatch watch_;
     EnvironmentMap environment_;
     LightData lights_;
     SpectrumTablesData spectra_;
@@ -55,6 +60,7 @@ class HostScene {
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
     bool guided_;
     SceneView view_;
+    double tables_s_ = 0.0;
 };
 
 /// The camera of a description for a picture of the given size.

@@ -106,6 +106,10 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.surface_index = optics_.surface_index.data();
     opal.surface_disperses = optics_.surface_disperses;
     opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
+    // Places beyond the last repeat it without its strength.
+    for (int k = 0; k < max_tested_pairs && opal.num_pairs > 0; ++k)
+        opal.families.set(k, opal.pairs[std::min(k, opal.num_pairs - 1)]);
+    for (int k = opal.num_pairs; k < max_tested_pairs; ++k) opal.families.form[k] = 0.0f;
     opal.coherence_nm = float(constants.coherence_length_um * units::nm_per_um);
     opal.fault = float(constants.stacking_fault_probability);
     opal.layer_nm = float(stacked_layer_nm(constants.sphere_diameter_nm));
