@@ -9,6 +9,7 @@
 #include "formats/animation.h"
 #include "formats/film_settings.h"
 #include "formats/illuminant.h"
+#include "formats/scene_lights.h"
 #include "formats/scene_objects.h"
 #include "formats/text.h"
 #include "formats/toml_enum.h"
@@ -16,7 +17,8 @@
 namespace opal {
 namespace {
 
-const std::vector<std::string> sampler_names = {"stratified", "independent"};
+const std::vector<std::string> sampler_names = {"sobol", "stratified", "independent"};
+const std::vector<std::string> light_sampling_names = {"both", "connections", "scattering"};
 const std::vector<std::string> filter_names = {"tent", "box", "gaussian", "blackman-harris"};
 const std::vector<std::string> camera_names = {"perspective", "orthographic"};
 const std::vector<std::string> environment_names = {"studio", "constant", "file"};
@@ -62,6 +64,8 @@ RenderDescription read_render(TomlSection section) {
     render.max_bounces = static_cast<int>(section.integer("max_bounces", render.max_bounces, 1, 1'000'000));
     render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
     render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
+    render.light_sampling = enum_choice(section, "light_sampling", render.light_sampling, light_sampling_names);
+    render.guided = section.boolean("guided", render.guided);
     render.filter = enum_choice(section, "filter", render.filter, filter_names);
     render.filter_radius_px =
         section.number("filter_radius_px", default_radius_px(render.filter), NumberRange::between(0.01, 16.0));
@@ -158,6 +162,7 @@ SceneDescription read_document(const TomlDocument& document) {
     }
     for (TomlSection& section : root.sections("object")) scene.objects.push_back(read_object(section, scene.materials));
     if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
+    for (TomlSection& section : root.sections("light")) scene.lights.push_back(read_light(section));
     scene.animation = read_animation(root.section("animation"));
     root.finish();
     return scene;
@@ -183,6 +188,8 @@ std::string scene_to_toml(const SceneDescription& scene) {
         "filter_radius_px = {}\n",
         render.width, render.height, render.samples, render.noise, render.max_bounces, render.seed,
         name(sampler_names, render.sampler), name(filter_names, render.filter), render.filter_radius_px);
+    text +=
+        fmt::format("light_sampling = \"{}\"\nguided = {}\n", name(light_sampling_names, render.light_sampling), render.guided);
     if (render.crop)
         text += fmt::format("crop = [{}, {}, {}, {}]\n", render.crop->x0, render.crop->y0, render.crop->x1, render.crop->y1);
     text += fmt::format(
@@ -208,6 +215,7 @@ std::string scene_to_toml(const SceneDescription& scene) {
         name(grains_names, scene.opal.grains), scene.opal.companions);
     for (const MaterialDescription& material : scene.materials) text += material_to_toml(material);
     for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
+    for (const LightDescription& light : scene.lights) text += light_to_toml(light);
     return text + animation_to_toml(scene.animation);
 }
 

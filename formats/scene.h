@@ -12,7 +12,8 @@
 
 namespace opal {
 
-enum class SamplerKind { stratified, independent };
+enum class SamplerKind { sobol, stratified, independent };
+enum class LightSamplingKind { both, connections, scattering };
 enum class FilterKind { tent, box, gaussian, blackman_harris };
 enum class CameraKind { perspective, orthographic };
 enum class EnvironmentKind { studio, constant, file };
@@ -20,6 +21,7 @@ enum class IlluminantKind { d65, a, equal_energy, blackbody, led, file };
 enum class Upsampling { jakob_hanika, smits, basis };
 enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
 enum class Dispersion { full, bands, none };
+enum class LightKind { area, sphere, spot, sun };
 enum class MajorantKind { local, global };
 enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
 /// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
@@ -44,6 +46,8 @@ struct RenderDescription {
     int max_bounces = 64;
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;
+    LightSamplingKind light_sampling = LightSamplingKind::both;
+    bool guided = true;  ///< scattered light is drawn towards where photons came from
     FilterKind filter = FilterKind::tent;
     double filter_radius_px = 1.0;
     std::optional<PixelWindow> crop;  ///< the part of the picture that is drawn; unset: all
@@ -79,6 +83,29 @@ struct EnvironmentDescription {
     IlluminantKind illuminant = IlluminantKind::d65;  ///< spectrum of what the picture shows as white
     double temperature_k = 4000.0;                    ///< blackbody, led
     std::filesystem::path illuminant_file;            ///< .csv
+};
+
+/// A light beside the environment. Radiance is in the film's unit: 1 shows as white.
+struct LightDescription {
+    LightKind kind = LightKind::area;
+    std::array<double, 3> position_mm = {0.0, 0.0, 100.0};  ///< centre
+    std::array<double, 3> target_mm = {0.0, 0.0, 0.0};      ///< area, spot: what the light looks at
+    std::array<double, 3> up = {0.0, 0.0, 1.0};             ///< rectangle: its height runs this way
+    bool disk = false;                                      ///< area: a disk of `radius_mm` instead of a rectangle
+    double width_mm = 20.0, height_mm = 20.0;               ///< rectangle
+    double radius_mm = 1.0;                                 ///< disk, sphere, spot
+    double cone_deg = 40.0;                                 ///< spot: full angle of the cone, beyond which it is dark
+    double blend = 0.15;                                    ///< spot: part of the cone's half angle over which it fades
+    double elevation_deg = 45.0;                            ///< sun: above the horizon
+    double azimuth_deg = 0.0;                               ///< sun: counter-clockwise from +X, seen from above
+    double angular_diameter_deg = 0.53;                     ///< sun
+    double irradiance = 3.141592653589793;            ///< sun: on a surface that faces it; pi makes a white surface show as white
+    double radiance = 100.0;                          ///< all but the sun
+    std::array<double, 3> color = {1.0, 1.0, 1.0};    ///< linear sRGB, 0 to 1, times the illuminant
+    IlluminantKind illuminant = IlluminantKind::d65;  ///< its own, whatever the environment's
+    double temperature_k = 4000.0;                    ///< blackbody, led
+    std::filesystem::path illuminant_file;            ///< .csv
+    bool visible = true;                              ///< to the camera directly
 };
 
 struct OpalDescription {
@@ -145,6 +172,7 @@ struct SceneDescription {
     OpalDescription opal;
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;
+    std::vector<LightDescription> lights;
     AnimationDescription animation;
 };
 

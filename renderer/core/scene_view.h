@@ -7,9 +7,12 @@
 #include "renderer/core/environment.h"
 #include "renderer/core/field_lookup.h"
 #include "renderer/core/grain_path.h"
+#include "renderer/core/light_guide.h"
+#include "renderer/core/lights.h"
 #include "renderer/core/material.h"
 #include "renderer/core/medium.h"
 #include "renderer/core/nested_bodies.h"
+#include "renderer/core/path_random.h"
 #include "renderer/core/pixel_filter.h"
 #include "renderer/core/two_beam.h"
 
@@ -54,6 +57,7 @@ struct OpalView {
     float max_odds = 400.0f;        ///< where the odds of reflection over a grain's size saturate
     float ewald_tolerance = 0.01f;
     MediumView medium;
+    LightGuideView guide;  ///< where scattered light comes from; may be none
 };
 
 /// Optical constants of the opal at the wavelengths of a path.
@@ -70,10 +74,19 @@ OPAL_HD inline LaneOptics<N> lane_optics(const OpalView& opal, const PathWavelen
     return optics;
 }
 
+/// How light is found at points where a straight line leads to it. All three have the same mean.
+enum class LightSampling {
+    both,         ///< drawn lights and drawn directions, weighted against each other
+    connections,  ///< drawn lights alone
+    scattering    ///< drawn directions alone
+};
+
 struct SceneView {
     Camera camera;
     SpectrumTables spectra;
     EnvironmentView environment;
+    LightsView lights;  ///< beside the environment
+    LightSampling light_sampling = LightSampling::both;
     const OpalView* bodies = nullptr;  ///< in the order of their priorities, the highest last
     const MeshView* meshes = nullptr;
     const MaterialView* materials = nullptr;
@@ -82,7 +95,7 @@ struct SceneView {
     int max_bounces = 64;
     int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
-    bool stratified = true;
+    PathSampler sampler = PathSampler::stratified;
     PixelFilter filter;
 };
 

@@ -87,13 +87,14 @@ bool EmbreeScene::closest(const Ray& ray, RayHit& hit) const {
     }
 }
 
-bool EmbreeScene::occluded(const Ray& ray) const {
+bool EmbreeScene::occluded(const Ray& ray, float max_mm) const {
     if (exact_) {
         RayHit hit;
-        return closest(ray, hit);
+        return closest(ray, hit) && hit.distance_mm < max_mm;
     }
     RTCRay query;
     fill_ray(query, ray);
+    query.tfar = max_mm;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene_, &context, &query);

@@ -21,8 +21,8 @@ class EmbreeScene {
 
     /// Nearest surface along the ray.
     bool closest(const Ray& ray, RayHit& hit) const;
-    /// Whether anything lies along the ray.
-    bool occluded(const Ray& ray) const;
+    /// Whether anything lies along the ray within `max_mm`.
+    bool occluded(const Ray& ray, float max_mm) const;
 
   private:
     RTCDevice device_ = nullptr;

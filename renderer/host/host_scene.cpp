@@ -24,6 +24,45 @@ SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
 }
 
+/// Wavelengths are drawn for all the light there is where the camera looks.
+SpectrumTablesData make_spectra(const SceneDescription& description, const EnvironmentMap& environment, const LightData& lights) {
+    SpectrumTableOptions options;
+    options.illuminant = illuminant_of(description.environment);
+    options.upsampling = description.color.upsampling;
+    options.alias = description.render.sampler == SamplerKind::independent;
+    std::vector<double> light = lights.spectrum_at(to_vec3(description.camera.target_mm));
+    const std::vector<double> white = colorimetric_table(options.illuminant);
+    const double environment_share = double(environment_importance({nullptr, 0, environment.mean_luminance}));
+    double total = 0.0;
+    for (std::size_t i = 0; i < light.size(); ++i) total += light[i] += environment_share * white[i];
+    if (total > 0.0) options.drawn_light = std::move(light);
+    return make_spectrum_tables(options);
+}
+
+PathSampler path_sampler(SamplerKind kind) {
+    switch (kind) {
+        case SamplerKind::sobol:
+            return PathSampler::sobol;
+        case SamplerKind::stratified:
+            return PathSampler::stratified;
+        case SamplerKind::independent:
+            break;
+    }
+    return PathSampler::independent;
+}
+
+LightSampling light_sampling(LightSamplingKind kind) {
+    switch (kind) {
+        case LightSamplingKind::connections:
+            return LightSampling::connections;
+        case LightSamplingKind::scattering:
+            return LightSampling::scattering;
+        case LightSamplingKind::both:
+            break;
+    }
+    return LightSampling::both;
+}
+
 /// The four kinds stand in the same order.
 PixelFilter pixel_filter(const RenderDescription& render) {
     return {static_cast<PixelFilterKind>(render.filter), float(render.filter_radius_px)};
@@ -49,9 +88,10 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
-    : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
-                                     description.render.sampler == SamplerKind::independent})),
-      environment_(make_environment(description.environment, description.color.upsampling)) {
+    : environment_(make_environment(description.environment, description.color.upsampling)),
+      lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
+      spectra_(make_spectra(description, environment_, lights_)),
+      guided_(description.render.guided) {
     tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
         material_data_.emplace_back(material, spectra_.upsampling, description.opal.dispersion);
@@ -70,6 +110,8 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.bodies = bodies_.data();
     view_.spectra = spectra_.view();
     view_.environment = environment_.view();
+    view_.lights = lights_.view();
+    require_lights_outside(description.lights);
     view_.meshes = mesh_views_.data();
     view_.materials = materials_.data();
     view_.width = render.width;
@@ -77,7 +119,8 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.max_bounces = render.max_bounces;
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
-    view_.stratified = render.sampler == SamplerKind::stratified;
+    view_.sampler = path_sampler(render.sampler);
+    view_.light_sampling = light_sampling(render.light_sampling);
     view_.filter = pixel_filter(render);
 }
 
@@ -123,6 +166,15 @@ void HostScene::order_bodies() {
             if (&other != &mesh && reaches_inside(other, body)) body.shape.grid = nullptr;
         if (encloses(mesh, view_.camera.position)) view_.camera_bodies = view_.camera_bodies.entered(mesh.body);
     }
+}
+
+void HostScene::require_lights_outside(const std::vector<LightDescription>& lights) const {
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        for (const MeshData& mesh : meshes_)
+            if (lights[i].kind != LightKind::sun && mesh.body >= 0 && encloses(mesh, to_vec3(lights[i].position_mm)))
+                throw InputError(
+                    fmt::format("light.{}: stands at [{}, {}, {}] inside a transparent object; lights must be outside", i,
+                                lights[i].position_mm[0], lights[i].position_mm[1], lights[i].position_mm[2]));
 }
 
 const std::string& HostScene::recipe_toml() const {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "color_bench.h"
+#include "convergence_bench.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -95,6 +96,10 @@ int run_bench(int argc, char** argv) {
     checks->add_option("--spp", arguments.samples, "samples per pixel of each of two renders")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
+    CLI::App* const convergence =
+        app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
+    convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -107,6 +112,10 @@ int run_bench(int argc, char** argv) {
         return 0;
     }
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
+    if (convergence->parsed()) {
+        opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
     if (media->parsed()) return run_media(arguments.folder);
     if (checks->parsed()) {
         opal::initialize_openvdb();

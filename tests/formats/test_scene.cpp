@@ -82,6 +82,28 @@ TEST(Scene, ErrorsOfMaterials) {
                        "unknown key 'object.0.priority'");
 }
 
+TEST(Scene, LightsReadBack) {
+    const std::string lights =
+        "[[light]]\nkind = \"area\"\nposition_mm = [0, 0, 50]\nwidth_mm = 3\n[[light]]\nkind = \"area\"\nradius_mm = 4\n"
+        "[[light]]\nkind = \"sphere\"\nilluminant = \"blackbody\"\ntemperature_k = 2700\n[[light]]\nkind = \"spot\"\n"
+        "cone_deg = 20\nvisible = false\n[[light]]\nkind = \"sun\"\ncolor = [1, 0.5, 0.2]\nelevation_deg = 10\n";
+    const SceneDescription scene = parse(minimal + lights);
+    ASSERT_EQ(scene.lights.size(), 5u);
+    EXPECT_FALSE(scene.lights[0].disk);
+    EXPECT_TRUE(scene.lights[1].disk);
+    EXPECT_EQ(scene.lights[4].angular_diameter_deg, 0.53);
+    const std::string text = scene_to_toml(scene);
+    EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
+    const auto light = [&](const std::string& keys) { return parse(minimal + "[[light]]\n" + keys); };
+    EXPECT_INPUT_ERROR(light("radius_mm = 1\n"), "light.0.kind: is needed; allowed: area, sphere, spot, sun");
+    EXPECT_INPUT_ERROR(light("kind = \"sphere\"\nwidth_mm = 1\n"), "unknown key 'light.0.width_mm'");
+    EXPECT_INPUT_ERROR(light("kind = \"area\"\nradius_mm = 1\nwidth_mm = 1\n"), "is for a rectangle");
+    EXPECT_INPUT_ERROR(light("kind = \"area\"\nposition_mm = [9, 0, 0]\nup = [-2, 0, 0]\n"), "must not point along");
+    EXPECT_INPUT_ERROR(light("kind = \"spot\"\nposition_mm = [0, 0, 0]\n"), "is where the light stands");
+    EXPECT_INPUT_ERROR(light("kind = \"spot\"\nradius_mm = 0\n"), "light.0.radius_mm: 0 is out of range");
+    EXPECT_INPUT_ERROR(light("kind = \"sun\"\nradiance = 1\n"), "unknown key 'light.0.radiance'");
+}
+
 TEST(Scene, FilterRadiusFollowsTheFilter) {
     EXPECT_EQ(parse(minimal).render.filter_radius_px, 1.0);
     EXPECT_EQ(parse(minimal + "[render]\nfilter = \"box\"\n").render.filter_radius_px, 0.5);
