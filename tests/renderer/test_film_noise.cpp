@@ -59,7 +59,8 @@ TEST(FilmNoise, StatesHowMuchPicturesScatter) {
             for (std::size_t c = 0; c < 3; ++c) variance[c] = (squares[p][c] - sums[p][c] * sums[p][c] / seeds) / (seeds - 1);
             const double luminance = sums[p][0] / seeds;
             sum_of_squares[0] += variance[0] / (luminance * luminance);
-            sum_of_squares[1] += 0.5 * (variance[1] + variance[2]) / (luminance * luminance);
+            const double scale = std::max({luminance, std::abs(sums[p][1] / seeds), std::abs(sums[p][2] / seeds)});
+            sum_of_squares[1] += 0.5 * (variance[1] + variance[2]) / (scale * scale);
         }
         for (int c = 0; c < 2; ++c) {
             const double ratio = std::sqrt(stated[c] / sum_of_squares[c]);
