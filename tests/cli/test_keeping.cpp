@@ -28,7 +28,7 @@ class Keeping : public testing::Test {
         small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.1);
         write_opal_asset(small.make(), folder_ / "opal.vdb");
         std::ofstream(folder_ / "scene.toml")
-            << "[render]\nwidth = 64\nheight = 48\nsamples = 256\n[film]\naovs = [\"depth\"]\n[camera]\nposition_mm = [0, -20, "
+            << "[render]\nwidth = 40\nheight = 30\nsamples = 256\n[film]\naovs = [\"depth\"]\n[camera]\nposition_mm = [0, -20, "
                "8]\ntarget_mm = [0, 0, 0]\n[[object]]\nkind = \"opal\"\nfile = \"opal.vdb\"\n";
     }
 
@@ -42,7 +42,7 @@ class Keeping : public testing::Test {
     }
     /// Runs a render that keeps checkpoints until it has left one, and ends it by a signal: later and later until one is there.
     void break_off(const std::string& command, const std::string& signal, const std::string& checkpoint) const {
-        for (double after_s = 0.5; !std::filesystem::exists(at(checkpoint)) && after_s < 60.0; after_s *= 1.5)
+        for (double after_s = 0.4; !std::filesystem::exists(at(checkpoint)) && after_s < 60.0; after_s *= 1.5)
             run_program("timeout --signal=" + signal + " " + std::to_string(after_s) + " " + command);
         ASSERT_TRUE(std::filesystem::exists(at(checkpoint)));
     }
@@ -51,8 +51,8 @@ class Keeping : public testing::Test {
 };
 
 TEST_F(Keeping, KilledAndResumedTwiceIsTheUnbrokenRender) {
-    expect_success(render("whole.exr", "--spp 1024"));
-    const std::string broken = render("broken.exr", "--spp 1024 --checkpoint 0.1s");
+    expect_success(render("whole.exr", "--spp 192"));
+    const std::string broken = render("broken.exr", "--spp 192 --threads 1 --checkpoint 0.1s");
     break_off(broken, "KILL", "broken.checkpoint");
     EXPECT_FALSE(std::filesystem::exists(at("broken.exr"))) << "the test's render must be long enough to be broken off";
     run_program("timeout --signal=KILL 0.7 " + broken + " --resume");
@@ -62,14 +62,14 @@ TEST_F(Keeping, KilledAndResumedTwiceIsTheUnbrokenRender) {
     EXPECT_FALSE(std::filesystem::exists(at("broken.checkpoint"))) << "a finished render needs none";
     const nlohmann::json stats = nlohmann::json::parse(bytes_of(at("stats.json")));
     EXPECT_GT(stats["checkpoints"]["resumed_from"]["samples_per_pixel"], 0.0);
-    EXPECT_EQ(stats["counts"]["samples"], 64 * 48 * 1024);
+    EXPECT_EQ(stats["counts"]["samples"], 40 * 30 * 192);
     EXPECT_GT(stats["noise"]["chroma"]["percentile_95"], stats["noise"]["chroma"]["median"]);
 }
 
 TEST_F(Keeping, InterruptedAdaptiveRenderIsResumed) {
-    const std::string flags = "--spp 4000 --noise 0.03";
+    const std::string flags = "--spp 400 --noise 0.06";
     expect_success(render("whole.exr", flags));
-    break_off(render("broken.exr", flags), "INT", "broken.checkpoint");
+    break_off(render("broken.exr", flags + " --threads 1"), "INT", "broken.checkpoint");
     EXPECT_TRUE(std::filesystem::exists(at("broken.exr")));
     expect_success(render("broken.exr", flags + " --resume"));
     EXPECT_EQ(bytes_of(at("whole.exr")), bytes_of(at("broken.exr")));
@@ -90,7 +90,7 @@ TEST_F(Keeping, SamplesAreAddedToAFinishedRender) {
 TEST_F(Keeping, VanishedFolderLeavesTheStateInTheTemporaryOne) {
     std::filesystem::create_directory(at("out"));
     std::filesystem::create_directory(at("temporary"));
-    const std::string flags = "--spp 512 --checkpoint 0.3s";
+    const std::string flags = "--spp 192 --threads 1 --checkpoint 0.3s";
     const ProgramResult result = run_program("export TMPDIR=" + at("temporary") + "; " + render("out/lost.exr", flags) +
                                              " & sleep 0.6; rm -r " + at("out") + "; wait $!");
     EXPECT_EQ(result.exit_code, 1) << result.err;
@@ -156,7 +156,7 @@ TEST_F(Keeping, CompareTellsHowPicturesDiffer) {
     EXPECT_GT(report["delta_e_2000"]["percentile_95"], report["delta_e_2000"]["mean"]);
     EXPECT_LT(report["z"]["beyond_4"], 0.01);
     EXPECT_GE(read_image(at("difference.exr")).find_channel("delta_e"), 0);
-    expect_failure(opal_render + " compare " + at("a.exr") + " " + at("small.exr"), 2, "differ in size: 64x48 and 32x48");
+    expect_failure(opal_render + " compare " + at("a.exr") + " " + at("small.exr"), 2, "differ in size: 40x30 and 32x30");
     expect_failure(opal_render + " compare " + at("a.exr") + " " + at("gone.exr"), 2, "no such image file");
 }
 

@@ -20,16 +20,16 @@ TEST(FilmNoise, LooksComeInWholeGroupsAndGrowByAQuarter) {
     EXPECT_EQ(next_noise_look(79), 80u);
 }
 
-/// The noise that one picture states, against how pictures of 40 other ranges of samples scatter: mean squares over 720 pixels.
-/// Of independent samples both estimate the same: 39 degrees of freedom in each pixel give the ratio a standard error of about
-/// sqrt(2 / (39 * 720)) = 0.8 % if pixels' samples were normal; they have heavy tails: 5 % allowed. Stratified samples scatter at
+/// The noise that one picture states, against how pictures of 24 other ranges of samples scatter: mean squares over 720 pixels.
+/// Of independent samples both estimate the same: 23 degrees of freedom in each pixel give the ratio a standard error of about
+/// sqrt(2 / (23 * 720)) = 1.1 % if pixels' samples were normal; they have heavy tails: 5 % allowed. Stratified samples scatter at
 /// most as much as groups of them say.
 TEST(FilmNoise, StatesHowMuchPicturesScatter) {
     for (const bool stratified : {false, true}) {
         const PlaneScene scene(
             {"film.spectral=false", std::string("render.sampler=\"") + (stratified ? "stratified\"" : "independent\"")});
         double stated[2] = {}, sum_of_squares[2] = {};
-        constexpr std::uint32_t pictures = 40, samples = 64, pixels = 36 * 20;
+        constexpr std::uint32_t pictures = 24, samples = 64, pixels = 36 * 20;
         std::vector<std::array<double, 3>> sums(pixels), squares(pixels);
         for (std::uint32_t k = 0; k < pictures; ++k) {
             const auto film = scene.film(k * samples);
@@ -73,9 +73,9 @@ TEST(FilmNoise, StatesHowMuchPicturesScatter) {
 }
 
 TEST(FilmNoise, RendersUntilQuietWithTheSameBitsFromAnyNumberOfThreads) {
-    const PlaneScene scene({"render.width=96", "render.height=72"});
-    const double noise = 0.06;
-    constexpr int most = 400;
+    const PlaneScene scene({"render.width=64", "render.height=48"});
+    const double noise = 0.07;
+    constexpr int most = 240;
     const auto film = scene.film();
     scene.render(*film, most, noise);
     int settled = 0;
