@@ -165,25 +165,22 @@ void CellNeighborSearch::mark_winners() {
 /// Drops the rivals that cannot win in a patch; divides it where others than known neighbours are left.
 void CellNeighborSearch::settle(const Patch& patch, bool finest) {
     const PatchGeometry geometry = patch_geometry(patch.face, patch.level, patch.u, patch.v);
-    const auto kappa = [&](const Rival& rival) {
-        return geometry.x * rival.slope.x() + geometry.y * rival.slope.y() + geometry.z * rival.slope.z() + rival.constant;
-    };
-    std::uint32_t winner = in_patch_[patch.first];
-    double best = kappa(rivals_[winner]);
-    for (std::uint32_t k = patch.first + 1; k < patch.last; ++k) {
-        const double value = kappa(rivals_[in_patch_[k]]);
-        if (value > best) {
-            best = value;
-            winner = in_patch_[k];
-        }
+    kappa_.clear();
+    std::size_t winner_at = 0;
+    for (std::uint32_t k = patch.first; k < patch.last; ++k) {
+        const Rival& rival = rivals_[in_patch_[k]];
+        kappa_.push_back(geometry.x * rival.slope.x() + geometry.y * rival.slope.y() + geometry.z * rival.slope.z() +
+                         rival.constant);
+        if (kappa_.back() > kappa_[winner_at]) winner_at = kappa_.size() - 1;
     }
+    const std::uint32_t winner = in_patch_[patch.first + winner_at];
+    const double best = kappa_[winner_at] * (1.0 - near_miss), reach2 = geometry.reach * geometry.reach;
     is_neighbor_[winner] = 1;
     const auto kept = std::uint32_t(in_finer_patch_.size());
     bool settled = true;
     for (std::uint32_t k = patch.first; k < patch.last; ++k) {
-        const Rival& rival = rivals_[in_patch_[k]];
-        const double behind = best * (1.0 - near_miss) - kappa(rival);
-        const double catches_up2 = geometry.reach * geometry.reach * (rival.slope - rivals_[winner].slope).lengthSqr();
+        const double behind = best - kappa_[k - patch.first];
+        const double catches_up2 = reach2 * (rivals_[in_patch_[k]].slope - rivals_[winner].slope).lengthSqr();
         if (behind > 0.0 && behind * behind > catches_up2) continue;
         in_finer_patch_.push_back(in_patch_[k]);
         if (finest) is_neighbor_[in_patch_[k]] = 1;

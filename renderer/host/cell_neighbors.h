@@ -72,6 +72,7 @@ class CellNeighborSearch {
     std::vector<Rival> rivals_;
     std::vector<std::uint32_t> may_win_[coarse_patches];  ///< rivals, in each coarse patch
     std::vector<char> is_neighbor_;
+    std::vector<double> kappa_;
     std::vector<std::uint32_t> in_patch_, in_finer_patch_;
     std::vector<Patch> patches_, finer_patches_;
 };

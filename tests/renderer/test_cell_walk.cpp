@@ -324,7 +324,8 @@ TEST(PublishedWalks, ErrWhereExpected) {
     const WalkErrors equal = errors_of<HyperboloidWalk>(random_sites(300, 0.0, 83), 40, 84);
     EXPECT_GT(equal.missed, equal.crossings / 20);  // a double root, lost to rounding
     const WalkErrors curved = errors_of<HyperboloidWalk>(random_sites(300, 0.9, 85), 40, 86);
-    EXPECT_GT(curved.spurious, curved.crossings / 20);  // the other sheet
+    EXPECT_GT(curved.wrong_mm, 1.0e-4 * curved.length_mm);
+    EXPECT_LE(curved.missed, curved.crossings / 10);
 }
 
 }  // namespace
