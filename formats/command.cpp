@@ -73,6 +73,7 @@ struct Progress::State {
     Stopwatch watch;
     std::mutex mutex;
     double last_print_s = 0.0;
+    double last_fraction = 0.0;
     bool terminal = ::isatty(2) != 0;
     bool printed = false;
 };
@@ -86,16 +87,19 @@ Progress::~Progress() {
     delete state_;
 }
 
-void Progress::update(double fraction) {
+void Progress::update(double fraction, const std::function<std::string()>& note) {
     const std::scoped_lock lock(state_->mutex);
-    const double now_s = state_->watch.seconds();
-    if (now_s - state_->last_print_s < (state_->terminal ? 0.2 : 10.0)) return;
+    const double now_s = state_->watch.seconds(), since_s = now_s - state_->last_print_s;
+    const bool due =
+        state_->terminal ? since_s >= 0.2 : since_s >= 10.0 && (fraction >= state_->last_fraction + 0.01 || since_s >= 60.0);
+    if (!due) return;
     state_->last_print_s = now_s;
+    state_->last_fraction = fraction;
     state_->printed = true;
-    const std::string left =
-        fraction > 0.0 ? ", " + format_duration(now_s * (1.0 - fraction) / fraction) + " left" : std::string();
-    fmt::print(stderr, "{}{}: {:.0f} %, {} so far{}{}", state_->terminal ? "\r\033[K" : "", state_->task, 100.0 * fraction,
-               format_duration(now_s), left, state_->terminal ? "" : "\n");
+    std::string line = fmt::format("{}: {:.0f} %, {} so far", state_->task, 100.0 * fraction, format_duration(now_s));
+    if (fraction > 0.0) line += ", " + format_duration(now_s * (1.0 - fraction) / fraction) + " left";
+    if (const std::string more = note ? note() : ""; !more.empty()) line += ", " + more;
+    fmt::print(stderr, "{}{}{}", state_->terminal ? "\r\033[K" : "", line, state_->terminal ? "" : "\n");
     std::fflush(stderr);
 }
 

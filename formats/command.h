@@ -18,8 +18,8 @@ bool interrupt_requested();
 /// Throws Interrupted if one came.
 void throw_if_interrupted();
 
-/// Progress on standard error: a line rewritten in place with the time left on a terminal, a plain line every ten seconds when
-/// piped. Safe to call from several threads.
+/// Progress on standard error: a line rewritten in place with the time left on a terminal. Piped, plain lines for a log: at most
+/// one in ten seconds, and then only where a hundredth more is done or a minute has passed. Safe to call from several threads.
 class Progress {
   public:
     explicit Progress(std::string task);
@@ -27,8 +27,8 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// `fraction` of the work that is done, in [0, 1].
-    void update(double fraction);
+    /// `fraction` of the work that is done, in [0, 1]. `note` is asked for more to say (empty: nothing), only when a line is due.
+    void update(double fraction, const std::function<std::string()>& note = {});
 
   private:
     struct State;

@@ -6,19 +6,20 @@
 
 #include <algorithm>
 
+#include "formats/animation.h"
+#include "formats/film_settings.h"
 #include "formats/illuminant.h"
 #include "formats/text.h"
-#include "formats/toml_reader.h"
+#include "formats/toml_enum.h"
 
 namespace opal {
 namespace {
 
 const std::vector<std::string> sampler_names = {"stratified", "independent"};
-const std::vector<std::string> filter_names = {"tent", "box"};
+const std::vector<std::string> filter_names = {"tent", "box", "gaussian", "blackman-harris"};
 const std::vector<std::string> camera_names = {"perspective", "orthographic"};
 const std::vector<std::string> environment_names = {"studio", "constant", "file"};
 const std::vector<std::string> illuminant_names = {"D65", "A", "E", "blackbody", "led", "file"};
-const std::vector<std::string> white_names = {"D65", "A", "E"};
 const std::vector<std::string> upsampling_names = {"jakob-hanika", "smits", "basis"};
 const std::vector<std::string> diffraction_names = {"two-beam", "ewald-fresnel", "laue", "none"};
 const std::vector<std::string> dispersion_names = {"full", "bands", "none"};
@@ -26,12 +27,31 @@ const std::vector<std::string> majorant_names = {"local", "global"};
 const std::vector<std::string> grains_names = {"auto", "cells", "voxels", "sphere-tracing", "hyperboloid"};
 const std::vector<std::string> material_names = {"diffuse"};
 const std::vector<std::string> object_names = {"opal", "mesh", "plane", "sphere", "cylinder"};
-const std::vector<std::string> aov_names = {"object_id", "grain_id", "depth", "normal"};
 
-template <typename Enum>
-Enum enum_choice(TomlSection& section, const std::string& key, Enum fallback, const std::vector<std::string>& names) {
-    const std::string name = section.choice(key, names[static_cast<std::size_t>(fallback)], names);
-    return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+std::optional<PixelWindow> read_crop(TomlSection& section, int width, int height) {
+    if (!section.has("crop")) return std::nullopt;
+    const std::vector<std::int64_t> edges = section.integers("crop", 4);
+    if (edges[0] < 0 || edges[0] >= edges[2] || edges[2] > width || edges[1] < 0 || edges[1] >= edges[3] || edges[3] > height)
+        section.fail("crop",
+                     fmt::format("[{}] is no part of the picture; allowed: [x0, y0, x1, y1] with 0 <= x0 < x1 <= {} and 0 "
+                                 "<= y0 < y1 <= {}",
+                                 fmt::join(edges, ", "), width, height));
+    return PixelWindow{int(edges[0]), int(edges[1]), int(edges[2]), int(edges[3])};
+}
+
+/// The usual radius of a filter, px.
+double default_radius_px(FilterKind filter) {
+    switch (filter) {
+        case FilterKind::box:
+            return 0.5;
+        case FilterKind::tent:
+            return 1.0;
+        case FilterKind::gaussian:
+            return 1.5;
+        case FilterKind::blackman_harris:
+            break;
+    }
+    return 2.0;
 }
 
 RenderDescription read_render(TomlSection section) {
@@ -39,10 +59,14 @@ RenderDescription read_render(TomlSection section) {
     render.width = static_cast<int>(section.integer("width", render.width, 1, 65536));
     render.height = static_cast<int>(section.integer("height", render.height, 1, 65536));
     render.samples = static_cast<int>(section.integer("samples", render.samples, 1, 1 << 24));
+    render.noise = section.number("noise", render.noise, NumberRange::between(0.0, 1.0));
     render.max_bounces = static_cast<int>(section.integer("max_bounces", render.max_bounces, 1, 1'000'000));
     render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
     render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
     render.filter = enum_choice(section, "filter", render.filter, filter_names);
+    render.filter_radius_px =
+        section.number("filter_radius_px", default_radius_px(render.filter), NumberRange::between(0.01, 16.0));
+    render.crop = read_crop(section, render.width, render.height);
     section.finish();
     return render;
 }
@@ -68,16 +92,6 @@ CameraDescription read_camera(TomlSection section) {
     if (cross == std::array<double, 3>{0.0, 0.0, 0.0}) section.fail("up", "must not point along the view");
     section.finish();
     return camera;
-}
-
-FilmDescription read_film(TomlSection section) {
-    FilmDescription film;
-    film.spectral = section.boolean("spectral", film.spectral);
-    film.aovs = section.choices("aovs", aov_names);
-    film.exposure_ev = section.number("exposure_ev", film.exposure_ev, NumberRange::between(-40.0, 40.0));
-    film.white = enum_choice(section, "white", film.white, white_names);
-    section.finish();
-    return film;
 }
 
 EnvironmentDescription read_environment(TomlSection section) {
@@ -142,6 +156,7 @@ ObjectDescription read_object(TomlSection section, const std::vector<std::string
     ObjectDescription object;
     if (!section.has("kind")) section.fail("kind", "is needed; allowed: " + join(object_names));
     object.kind = enum_choice(section, "kind", object.kind, object_names);
+    object.name = section.text("name", "");
     if (object.kind == ObjectKind::opal || object.kind == ObjectKind::mesh) {
         object.file = section.path("file");
         if (object.file.empty()) section.fail("file", "is needed for this kind of object");
@@ -186,6 +201,7 @@ SceneDescription read_document(const TomlDocument& document) {
     }
     for (TomlSection& section : root.sections("object")) scene.objects.push_back(read_object(section, names));
     if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
+    scene.animation = read_animation(root.section("animation"));
     root.finish();
     return scene;
 }
@@ -196,6 +212,7 @@ std::string vector_text(const std::array<double, 3>& v) {
 
 std::string object_to_toml(const ObjectDescription& object) {
     std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
+    if (!object.name.empty()) text += fmt::format("name = {}\n", toml_quoted(object.name));
     if (!object.file.empty()) text += fmt::format("file = {}\n", toml_quoted(object.file.string()));
     if (object.kind == ObjectKind::opal)
         text += fmt::format("orientation_seed = {}\npriority = {}\n", object.orientation_seed, object.priority);
@@ -224,17 +241,19 @@ std::string scene_to_toml(const SceneDescription& scene) {
     const RenderDescription& render = scene.render;
     const CameraDescription& camera = scene.camera;
     std::string text = fmt::format(
-        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = \"{}\"\n",
-        render.width, render.height, render.samples, render.max_bounces, render.seed, name(sampler_names, render.sampler),
-        name(filter_names, render.filter));
+        "[render]\nwidth = {}\nheight = {}\nsamples = {}\nnoise = {}\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"\nfilter = "
+        "\"{}\"\n"
+        "filter_radius_px = {}\n",
+        render.width, render.height, render.samples, render.noise, render.max_bounces, render.seed,
+        name(sampler_names, render.sampler), name(filter_names, render.filter), render.filter_radius_px);
+    if (render.crop)
+        text += fmt::format("crop = [{}, {}, {}, {}]\n", render.crop->x0, render.crop->y0, render.crop->x1, render.crop->y1);
     text += fmt::format(
         "\n[camera]\nkind = \"{}\"\nposition_mm = {}\ntarget_mm = {}\nup = {}\nvertical_fov_deg = {}\nview_height_mm = {}\n"
         "aperture_radius_mm = {}\nfocus_mm = {}\n",
         name(camera_names, camera.kind), vector_text(camera.position_mm), vector_text(camera.target_mm), vector_text(camera.up),
         camera.vertical_fov_deg, camera.view_height_mm, camera.aperture_radius_mm, camera.focus_mm);
-    text += fmt::format("\n[film]\nspectral = {}\naovs = [{}]\nexposure_ev = {}\nwhite = \"{}\"\n", scene.film.spectral,
-                        scene.film.aovs.empty() ? "" : fmt::format("\"{}\"", fmt::join(scene.film.aovs, "\", \"")),
-                        scene.film.exposure_ev, name(white_names, scene.film.white));
+    text += "\n[film]\n" + film_to_toml(scene.film);
     text += fmt::format("\n[color]\nupsampling = \"{}\"\n", name(upsampling_names, scene.color.upsampling));
     text += fmt::format("\n[environment]\nkind = \"{}\"\n", name(environment_names, scene.environment.kind));
     if (!scene.environment.file.empty()) text += fmt::format("file = {}\n", toml_quoted(scene.environment.file.string()));
@@ -254,7 +273,7 @@ std::string scene_to_toml(const SceneDescription& scene) {
         text += fmt::format("\n[[material]]\nname = {}\nkind = \"{}\"\nalbedo = {}\n", toml_quoted(material.name),
                             name(material_names, material.kind), vector_text(material.albedo));
     for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
-    return text;
+    return text + animation_to_toml(scene.animation);
 }
 
 }  // namespace opal

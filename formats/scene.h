@@ -4,13 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace opal {
 
 enum class SamplerKind { stratified, independent };
-enum class FilterKind { tent, box };
+enum class FilterKind { tent, box, gaussian, blackman_harris };
 enum class CameraKind { perspective, orthographic };
 enum class EnvironmentKind { studio, constant, file };
 enum class IlluminantKind { d65, a, equal_energy, blackbody, led, file };
@@ -20,16 +21,33 @@ enum class Dispersion { full, bands, none };
 enum class MajorantKind { local, global };
 enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
 enum class MaterialKind { diffuse };
+/// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
+/// values linear, cut at 1.
+enum class ToneCurve { filmic, srgb, none };
 enum class ObjectKind { opal, mesh, plane, sphere, cylinder };
+
+/// Pixels [x0, x1) x [y0, y1) of a picture.
+struct PixelWindow {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+    bool operator==(const PixelWindow&) const = default;
+};
 
 struct RenderDescription {
     int width = 960;
     int height = 720;
     int samples = 256;
+    double noise = 0.0;  ///< relative error of luminance and chroma at which a place gets no more samples; 0: samples everywhere
     int max_bounces = 64;
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;
     FilterKind filter = FilterKind::tent;
+    double filter_radius_px = 1.0;
+    std::optional<PixelWindow> crop;  ///< the part of the picture that is drawn; unset: all
+
+    PixelWindow window() const { return crop ? *crop : PixelWindow{0, 0, width, height}; }
 };
 
 struct CameraDescription {
@@ -47,7 +65,9 @@ struct FilmDescription {
     bool spectral = false;  ///< 48 layers of 10 nm beside the RGB
     std::vector<std::string> aovs;
     double exposure_ev = 0.0;
-    IlluminantKind white = IlluminantKind::d65;  ///< what is shown as white; d65, a or equal_energy
+    IlluminantKind white = IlluminantKind::d65;  ///< what is shown as white; d65, a, equal_energy or blackbody
+    double white_temperature_k = 6500.0;         ///< blackbody
+    ToneCurve tone = ToneCurve::filmic;
 };
 
 struct EnvironmentDescription {
@@ -70,6 +90,8 @@ struct OpalDescription {
     GrainsKind grains =
         GrainsKind::automatic;  ///< automatic: cells where the file's sites describe the grains exactly, else voxels
     int companions = 3;         ///< wavelengths that travel with the hero, 0 to 7
+
+    bool operator==(const OpalDescription&) const = default;
 };
 
 struct MaterialDescription {
@@ -80,6 +102,7 @@ struct MaterialDescription {
 
 struct ObjectDescription {
     ObjectKind kind = ObjectKind::opal;
+    std::string name;            ///< by which an animation refers to it
     std::filesystem::path file;  ///< opal: the .vdb; mesh: OBJ, PLY, STL or glTF
     std::string material;        ///< name of a [[material]]; unused for an opal
     std::array<double, 3> translate_mm = {0.0, 0.0, 0.0};
@@ -91,11 +114,24 @@ struct ObjectDescription {
     double size_mm = 2000.0;  ///< plane: edge of the square
     int priority = 0;         ///< opal: where bodies overlap the one of higher priority is there; of equal ones the later
     std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
+
+    bool operator==(const ObjectDescription&) const = default;
 };
 
 /// How colours of the scene become spectra.
 struct ColorDescription {
     Upsampling upsampling = Upsampling::jakob_hanika;
+};
+
+/// Steady turns from frame to frame; the first frame is the scene as it stands. Angles are counter-clockwise about +Z, seen from
+/// above.
+struct AnimationDescription {
+    int frames = 1;
+    double turntable_deg = 0.0;                  ///< per frame, about the vertical axis through `center_mm`
+    std::vector<std::string> turntable_objects;  ///< names; empty: every opal
+    std::array<double, 3> center_mm = {0.0, 0.0, 0.0};
+    double light_sweep_deg = 0.0;   ///< per frame, of the environment
+    double camera_orbit_deg = 0.0;  ///< per frame, about the vertical axis through the camera's target
 };
 
 /// What opal-render draws: a validated scene.toml.
@@ -108,6 +144,7 @@ struct SceneDescription {
     OpalDescription opal;
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;
+    AnimationDescription animation;
 };
 
 /// Reads and validates. Throws InputError located at file:line:column.

@@ -219,7 +219,23 @@ std::array<double, 3> TomlSection::vector3(const std::string& key, const std::ar
     return {checked((*array)[0]), checked((*array)[1]), checked((*array)[2])};
 }
 
-std::vector<std::string> TomlSection::choices(const std::string& key, const std::vector<std::string>& allowed) {
+std::vector<std::int64_t> TomlSection::integers(const std::string& key, std::size_t count) {
+    const toml::node* node = find(key);
+    std::vector<std::int64_t> values;
+    const toml::array* array = node ? node->as_array() : nullptr;
+    if (!array || array->size() != count)
+        fail(key, fmt::format("expected an array of {} integers, found {}", count,
+                              array  ? fmt::format("{} elements", array->size())
+                              : node ? describe_type(*node)
+                                     : "nothing"));
+    for (const toml::node& element : *array) {
+        if (!element.is_integer()) fail(key, "expected integers, found " + describe_type(element));
+        values.push_back(element.value<std::int64_t>().value());
+    }
+    return values;
+}
+
+std::vector<std::string> TomlSection::texts(const std::string& key) {
     const toml::node* node = find(key);
     std::vector<std::string> values;
     if (!node) return values;
@@ -227,11 +243,16 @@ std::vector<std::string> TomlSection::choices(const std::string& key, const std:
     if (!array) fail(key, "expected an array of strings, found " + describe_type(*node));
     for (const toml::node& element : *array) {
         if (!element.is_string()) fail(key, "expected strings, found " + describe_type(element));
-        const std::string value = element.value<std::string>().value();
+        values.push_back(element.value<std::string>().value());
+    }
+    return values;
+}
+
+std::vector<std::string> TomlSection::choices(const std::string& key, const std::vector<std::string>& allowed) {
+    const std::vector<std::string> values = texts(key);
+    for (const std::string& value : values)
         if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
             fail(key, fmt::format("'{}' is not known; allowed: {}{}", value, join(allowed), did_you_mean(value, allowed)));
-        values.push_back(value);
-    }
     return values;
 }
 

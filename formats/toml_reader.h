@@ -43,6 +43,10 @@ class TomlSection {
     /// Three numbers; a single number stands for all three where `scalar_allowed`.
     std::array<double, 3> vector3(const std::string& key, const std::array<double, 3>& fallback, const NumberRange& range,
                                   bool scalar_allowed = false);
+    /// Exactly `count` integers.
+    std::vector<std::int64_t> integers(const std::string& key, std::size_t count);
+    /// Any number of strings; an absent key reads as none.
+    std::vector<std::string> texts(const std::string& key);
     std::vector<std::string> choices(const std::string& key, const std::vector<std::string>& allowed);
     /// A file's path; a relative one is relative to the file that holds the key (to the working folder for --set). Empty if
     /// absent.

@@ -133,7 +133,10 @@ Image draw_percolation_plot(const PercolationPlot& plot) {
         canvas.curve(largest_color, largest);
         canvas.legend();
     }
-    Image image{width_px, height_px, {"R", "G", "B"}, {}, {}};
+    Image image;
+    image.width = width_px;
+    image.height = height_px;
+    image.channel_names = {"R", "G", "B"};
     image.pixels.assign(pixels.begin(), pixels.end());
     for (float& value : image.pixels) value /= 255.0f;
     return image;

@@ -8,7 +8,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/error.h"
-#include "formats/scene.h"
+#include "renderer/host/development.h"
 #include "renderer/host/image_comparison.h"
 #include "renderer/render_command.h"
 
@@ -30,17 +30,6 @@ constexpr const char* footer = R"(Errors of A against the reference B, from line
 
 Example:
   opal-render compare draft.exr final.exr --json)";
-
-/// The exposure that the scene in a picture's header asks for; 0 without one that can be read.
-double header_exposure_ev(const Image& image) {
-    const auto scene = image.attributes.find("opal:scene");
-    if (scene == image.attributes.end()) return 0.0;
-    try {
-        return parse_scene(scene->second, "opal:scene", {}).film.exposure_ev;
-    } catch (const InputError&) {
-        return 0.0;
-    }
-}
 
 /// JSON has no infinity: the PSNR of equal pictures is null.
 nlohmann::json finite_or_null(double value) {
@@ -97,7 +86,8 @@ int command_compare(int argc, char** argv) {
     }
 
     const Image picture = read_image(options.picture), reference = read_image(options.reference);
-    const double exposure_ev = options.exposure_ev ? *options.exposure_ev : header_exposure_ev(reference);
+    const double exposure_ev =
+        options.exposure_ev ? *options.exposure_ev : film_of_image(reference, options.reference.string()).exposure_ev;
     const ImageComparison comparison = compare_images(picture, reference, exposure_ev);
     if (!options.difference.empty()) write_exr(options.difference, comparison.difference);
     if (options.json)

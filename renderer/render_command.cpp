@@ -17,7 +17,7 @@ struct Command {
     int (*run)(int argc, char** argv);
 };
 
-constexpr Command commands[] = {{"compare", command_compare}};
+constexpr Command commands[] = {{"compare", command_compare}, {"develop", command_develop}, {"merge", command_merge}};
 
 }  // namespace
 

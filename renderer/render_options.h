@@ -8,8 +8,17 @@
 #include <vector>
 
 #include "formats/scene.h"
+#include "renderer/host/film_parts.h"
+#include "renderer/host/tev_client.h"
 
 namespace opal {
+
+/// How a render's state is kept.
+struct CheckpointOptions {
+    double interval_s = 60.0;  ///< 0: no checkpoints
+    bool resume = false;
+    bool keep = false;  ///< when the render is finished
+};
 
 /// The flags of a render.
 struct RenderOptions {
@@ -21,6 +30,12 @@ struct RenderOptions {
     int threads = 0;            ///< 0: all cores
     std::optional<std::int64_t> seed;
     std::string device = "auto";
+    std::optional<double> noise;            ///< unset: the scene's
+    std::optional<SampleRange> samples_of;  ///< draw these samples alone, as a part of the whole
+    CheckpointOptions checkpoint;
+    std::string crop;               ///< "x0,y0,x1,y1"; empty: the scene's
+    std::string frames;             ///< "A:B" or "N"; empty: all
+    std::optional<TevAddress> tev;  ///< the viewer that shows the picture while it is made
 
     /// The picture for people, beside the output.
     std::filesystem::path png() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "formats/report.h"
+#include "renderer/host/film_noise.h"
 
 namespace opal {
 namespace {
@@ -29,6 +30,26 @@ nlohmann::json spectrum_report(const SpectrumTotals& totals, const SpectrumTable
     return bins;
 }
 
+/// Null where the picture has too few samples to tell.
+nlohmann::json noise_report(const Film& film) {
+    const std::optional<PictureNoise> noise = picture_noise(film);
+    if (!noise) return nullptr;
+    const auto levels = [](double median, double percentile_95) {
+        return nlohmann::json{{"median", median}, {"percentile_95", percentile_95}};
+    };
+    return {{"luminance", levels(noise->median.luminance, noise->percentile_95.luminance)},
+            {"chroma", levels(noise->median.chroma, noise->percentile_95.chroma)},
+            {"floor_luminance", film.noise_floor()}};
+}
+
+nlohmann::json checkpoint_report(const CheckpointCounts& counts) {
+    nlohmann::json report = {{"written", counts.written}, {"failed", counts.failed}, {"resumed_from", nullptr}};
+    if (counts.resumed_from)
+        report["resumed_from"] = {{"samples_per_pixel", counts.resumed_from->samples_per_pixel},
+                                  {"seconds", counts.resumed_from->render_s}};
+    return report;
+}
+
 nlohmann::json grains_report(const HostScene& host) {
     nlohmann::json opals = nlohmann::json::array();
     for (const auto& opal : host.opals())
@@ -39,10 +60,17 @@ nlohmann::json grains_report(const HostScene& host) {
 }  // namespace
 
 nlohmann::json render_report(const SceneDescription& scene, const HostScene& host, const RenderOutcome& outcome, const Film& film,
-                             double loading_s, int threads) {
+                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads) {
     const PathCounters& counters = outcome.counters;
     const std::uint64_t samples = film.total_samples();
-    return {{"seconds", {{"loading", loading_s}, {"rendering", outcome.seconds}}},
+    return {{"seconds",
+             {{"loading", stages.tables + stages.objects + stages.rays},
+              {"loading_tables", stages.tables},
+              {"loading_objects", stages.objects},
+              {"loading_rays", stages.rays},
+              {"rendering", outcome.seconds},
+              {"rendering_before_resume", keeper.earlier_s()},
+              {"writing", stages.writing}}},
             {"peak_memory_bytes", peak_memory_bytes()},
             {"threads", threads},
             {"seed", scene.render.seed},
@@ -50,6 +78,7 @@ nlohmann::json render_report(const SceneDescription& scene, const HostScene& hos
             {"counts",
              {{"samples", samples},
               {"samples_per_pixel", outcome.finished_samples},
+              {"new_samples", outcome.new_samples},
               {"grains", host.num_grains()},
               {"reciprocal_points", host.reciprocal_points()},
               {"grain_crossings", counters.grain_crossings},
@@ -61,11 +90,14 @@ nlohmann::json render_report(const SceneDescription& scene, const HostScene& hos
               {"lost_paths", counters.lost_paths},
               {"not_a_number", counters.not_a_number},
               {"majorant_violations", counters.majorant_violations}}},
+            {"paths_per_second", double(outcome.new_samples) / std::max(1.0e-9, outcome.seconds)},
             {"grains", grains_report(host)},
             {"paths_per_second", double(samples) / std::max(1.0e-9, outcome.seconds)},
             {"truncated_rgb",
              {outcome.totals.truncated_rgb[0] / double(samples), outcome.totals.truncated_rgb[1] / double(samples),
               outcome.totals.truncated_rgb[2] / double(samples)}},
+            {"noise", noise_report(film)},
+            {"checkpoints", checkpoint_report(keeper.counts())},
             {"spectrum", spectrum_report(outcome.totals, host.view().spectra)},
             {"versions", version_report()},
             {"scene", scene_to_toml(scene)}};

@@ -17,21 +17,16 @@ struct Camera {
 };
 
 /// Ray through the picture position (x, y) in [0, 1]^2, top left first; (lens_u, lens_v) in [0, 1)^2 choose the point on the
-/// lens.
+/// lens. All rays of one picture position meet in the plane in focus.
 OPAL_HD inline Ray camera_ray(const Camera& camera, float x, float y, float lens_u, float lens_v) {
     const Vec3 offset = (x - 0.5f) * camera.right + (y - 0.5f) * camera.down;
-    if (camera.orthographic) return {camera.position + offset, camera.forward};
-    const Vec3 through = camera.forward + offset;
-    if (camera.aperture_radius_mm <= 0.0f) return {camera.position, normalize(through)};
+    const Vec3 origin = camera.orthographic ? camera.position + offset : camera.position;
+    const Vec3 through = camera.orthographic ? camera.forward : camera.forward + offset;
+    if (camera.aperture_radius_mm <= 0.0f) return {origin, camera.orthographic ? through : normalize(through)};
     const float radius_mm = camera.aperture_radius_mm * sqrtf(lens_u), angle_rad = 2.0f * pi_f * lens_v;
     const Vec3 lens =
         (radius_mm * cosf(angle_rad)) * normalize(camera.right) + (radius_mm * sinf(angle_rad)) * normalize(camera.down);
-    return {camera.position + lens, normalize(camera.focus_mm * through - lens)};
-}
-
-/// Tent filter of radius one pixel by inversion: offset from the pixel's centre in pixels.
-OPAL_HD inline float sample_tent(float u) {
-    return u < 0.5f ? sqrtf(2.0f * u) - 1.0f : 1.0f - sqrtf(2.0f - 2.0f * u);
+    return {origin + lens, normalize(camera.focus_mm * through - lens)};
 }
 
 }  // namespace opal

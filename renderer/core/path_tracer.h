@@ -285,12 +285,10 @@ OPAL_HD PathResult<N> trace_sample(const SceneView& scene, const Intersector& in
     PathRandom random(scene.seed, pixel, sample);
     const PixelSequence sequence(scene.seed, pixel, sample);
     const float u = scene.stratified ? sequence.wavelength() : random.next();
-    float x = scene.stratified ? sequence.position_x() : random.next();
-    float y = scene.stratified ? sequence.position_y() : random.next();
-    if (scene.tent_filter) {
-        x = 0.5f + sample_tent(x);
-        y = 0.5f + sample_tent(y);
-    }
+    const float filter_u = scene.stratified ? sequence.position_x() : random.next();
+    const float filter_v = scene.stratified ? sequence.position_y() : random.next();
+    const float x = 0.5f + sample_pixel_filter(scene.filter, filter_u);
+    const float y = 0.5f + sample_pixel_filter(scene.filter, filter_v);
     wavelengths = sample_wavelengths<N>(scene.spectra, u, scene.wavelengths);
     const float lens_u = random.next(), lens_v = random.next();
     const Ray ray = camera_ray(scene.camera, (float(pixel % uint32_t(scene.width)) + x) / float(scene.width),

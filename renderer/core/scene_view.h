@@ -9,6 +9,7 @@
 #include "renderer/core/material.h"
 #include "renderer/core/medium.h"
 #include "renderer/core/nested_bodies.h"
+#include "renderer/core/pixel_filter.h"
 #include "renderer/core/two_beam.h"
 
 /// Everything the transport reads: pointers and counts, the one thing that crosses to a device.
@@ -78,7 +79,7 @@ struct SceneView {
     int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
     bool stratified = true;
-    bool tent_filter = true;
+    PixelFilter filter;
 };
 
 /// What a ray met.

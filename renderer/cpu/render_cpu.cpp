@@ -7,11 +7,10 @@
 #include <atomic>
 
 #include "formats/command.h"
+#include "renderer/host/film_noise.h"
 
 namespace opal {
 namespace {
-
-constexpr int tile_size = 16;
 
 void add_counters(PathCounters& sum, const PathCounters& part) {
     sum.diffractions += part.diffractions;
@@ -25,129 +24,175 @@ void add_counters(PathCounters& sum, const PathCounters& part) {
     sum.majorant_violations += part.majorant_violations;
 }
 
-struct TileSums {
-    PathCounters counters;
-    SpectrumTotals totals;
-};
-
+/// Adds the samples [block.end_sample, end) to a block's pixels.
 template <int N>
-void render_tile(const HostScene& scene, const EmbreeScene& intersector, int tile, int first_sample, int end_sample, Film& film,
-                 TileSums& sums) {
+void trace_block(const HostScene& scene, const EmbreeScene& intersector, const PixelWindow& pixels, std::uint32_t end, Film& film,
+                 FilmBlock& block) {
     const SceneView& view = scene.view();
-    const int tiles_across = (view.width + tile_size - 1) / tile_size;
-    const int x0 = tile % tiles_across * tile_size, y0 = tile / tiles_across * tile_size;
-    for (int y = y0; y < std::min(y0 + tile_size, view.height); ++y)
-        for (int x = x0; x < std::min(x0 + tile_size, view.width); ++x)
-            for (int sample = first_sample; sample < end_sample; ++sample) {
-                const std::uint32_t pixel = std::uint32_t(y) * std::uint32_t(view.width) + std::uint32_t(x);
+    const PixelWindow& window = film.window();
+    for (int y = pixels.y0; y < pixels.y1; ++y)
+        for (int x = pixels.x0; x < pixels.x1; ++x)
+            for (std::uint32_t sample = block.end_sample; sample < end; ++sample) {
+                // A path's random numbers belong to its pixel of the whole picture, so that a part of it shows the same.
+                const std::uint32_t pixel =
+                    std::uint32_t(window.y0 + y) * std::uint32_t(view.width) + std::uint32_t(window.x0 + x);
                 PathWavelengths<N> wavelengths;
-                const PathResult<N> result =
-                    trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, sums.counters);
-                film.add(view.spectra, pixel, film_sample(wavelengths, result), sums.totals);
+                const PathResult<N> result = trace_sample(view, intersector, pixel, sample, wavelengths, block.counters);
+                film.add(view.spectra, std::uint32_t(y * film.width() + x), film_sample(wavelengths, result), block.totals);
             }
+    block.end_sample = end;
 }
 
-using TileRenderer = decltype(&render_tile<1>);
+using BlockTracer = decltype(&trace_block<1>);
 
 /// The transport compiled for just as many lanes as are wanted.
-TileRenderer tile_renderer(int wavelengths) {
-    if (wavelengths == 1) return render_tile<1>;
-    return wavelengths <= 4 ? render_tile<4> : render_tile<8>;
+BlockTracer block_tracer(int wavelengths) {
+    if (wavelengths == 1) return trace_block<1>;
+    return wavelengths <= 4 ? trace_block<4> : trace_block<8>;
+}
+
+/// Remembers a block's noise, which ends it where it is small enough.
+void look_at_noise(Film& film, int index, double wanted) {
+    FilmBlock& block = film.block(index);
+    const NoiseLevel noise = block_noise(film, index);
+    block.luminance_noise = float(noise.luminance);
+    block.chroma_noise = float(noise.chroma);
+    if (wanted > 0.0 && noise.larger() <= wanted) block.settled = true;
 }
 
 /// Samples of the next pass: few at first, so that a picture is there early, then more, to keep the film's memory traffic low; no
-/// more than the time that is left allows.
-int pass_size(int done, double elapsed_s, double time_limit_s) {
-    const int size = done < 4 ? 1 : (done < 16 ? 4 : 16);
-    if (time_limit_s <= 0.0 || done == 0) return size;
-    const double affordable = (time_limit_s - elapsed_s) * done / std::max(1.0e-3, elapsed_s);
-    return std::max(1, std::min(size, int(affordable)));
+/// more than the time that is left allows. `done` samples per pixel are there, `new_samples` of them drawn in `elapsed_s`.
+std::uint32_t pass_size(std::uint32_t done, std::uint32_t new_samples, double elapsed_s, double time_limit_s) {
+    const std::uint32_t size = done < 4 ? 1 : (done < 16 ? 4 : 16);
+    if (time_limit_s <= 0.0 || new_samples == 0) return size;
+    const double affordable = (time_limit_s - elapsed_s) * new_samples / std::max(1.0e-3, elapsed_s);
+    return std::uint32_t(std::clamp(affordable, 1.0, double(size)));
 }
+
+/// One render: what it works on, and how far it has come.
+class RenderRun {
+  public:
+    RenderRun(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
+              const std::function<void(const RenderProgress&)>& progress)
+        : scene_(scene),
+          intersector_(intersector),
+          limits_(limits),
+          film_(film),
+          progress_(progress),
+          trace_(block_tracer(scene.view().wavelengths)),
+          // What single samples not in whole groups would tell about noise depends on where they start.
+          groups_whole_(film.first_sample() % noise_group == 0) {
+        for (int b = 0; b < film.num_blocks(); ++b) total_work_ += work_left(film.block(b));
+    }
+
+    RenderOutcome run() {
+        const std::uint32_t start = least_end();
+        const std::uint64_t samples_before = film_.total_samples();
+        RenderOutcome outcome;
+        begin_noise();
+        while (!interrupt_requested()) {
+            const std::uint32_t done = least_end();
+            if (done >= std::uint32_t(limits_.samples)) break;
+            if (limits_.time_s > 0.0 && done > start && watch_.seconds() >= limits_.time_s) break;
+            pass(next_target(done, done - start));
+            begin_noise();
+        }
+        outcome.interrupted = interrupt_requested();
+        std::uint32_t lowest = UINT32_MAX;
+        // In the order of blocks: floating-point sums must not depend on which thread ended first.
+        for (int b = 0; b < film_.num_blocks(); ++b) {
+            const FilmBlock& block = film_.block(b);
+            add_counters(outcome.counters, block.counters);
+            outcome.totals.add(block.totals);
+            lowest = std::min(lowest, block.end_sample - film_.first_sample());
+        }
+        outcome.finished_samples = int(lowest);
+        outcome.new_samples = film_.total_samples() - samples_before;
+        outcome.seconds = watch_.seconds();
+        return outcome;
+    }
+
+  private:
+    std::int64_t work_left(const FilmBlock& block) const {
+        return block.settled ? 0 : std::max<std::int64_t>(0, std::int64_t(limits_.samples) - block.end_sample);
+    }
+
+    /// Of the blocks that go on; limits_.samples where none does.
+    std::uint32_t least_end() const {
+        std::uint32_t least = std::uint32_t(limits_.samples);
+        for (int b = 0; b < film_.num_blocks(); ++b)
+            if (!film_.block(b).settled) least = std::min(least, film_.block(b).end_sample);
+        return least;
+    }
+
+    std::uint32_t next_target(std::uint32_t done, std::uint32_t new_samples) const {
+        const std::uint32_t first = film_.first_sample();
+        std::uint32_t target = done + pass_size(done - first, new_samples, watch_.seconds(), limits_.time_s);
+        // The floor of the noise is of the whole picture at one sample count.
+        if (done < first + least_samples_for_noise) target = std::min(target, first + least_samples_for_noise);
+        return std::min(target, std::uint32_t(limits_.samples));
+    }
+
+    void pass(std::uint32_t target) {
+        tbb::parallel_for(tbb::blocked_range<int>(0, film_.num_blocks(), 1), [&](const tbb::blocked_range<int>& range) {
+            for (int b = range.begin(); b != range.end() && !interrupt_requested(); ++b) {
+                advance(b, target);
+                const double by_time = limits_.time_s > 0.0 ? watch_.seconds() / limits_.time_s : 0.0;
+                progress_({std::min(1.0, std::max(double(work_done_) / double(total_work_), by_time)),
+                           double(new_paths_) / std::max(1.0e-3, watch_.seconds())});
+            }
+        });
+    }
+
+    /// Once all blocks have as many samples as noise takes: its floor, and the first look at it. A render that was cut off in
+    /// between makes up for what it missed.
+    void begin_noise() {
+        const std::uint32_t begin = film_.first_sample() + least_samples_for_noise;
+        if (!groups_whole_ || (film_.noise_floor() < 0.0 && least_end() != begin)) return;
+        if (film_.noise_floor() < 0.0) film_.set_noise_floor(measured_noise_floor(film_));
+        for (int b = 0; b < film_.num_blocks(); ++b) {
+            FilmBlock& block = film_.block(b);
+            const std::scoped_lock lock(block.lock);
+            if (block.end_sample != begin || block.luminance_noise >= 0.0f) continue;
+            const std::int64_t work_before = work_left(block);
+            look_at_noise(film_, b, limits_.noise);
+            work_done_ += work_before - work_left(block);
+        }
+    }
+
+    void advance(int index, std::uint32_t target) {
+        FilmBlock& block = film_.block(index);
+        const std::scoped_lock lock(block.lock);
+        const std::int64_t work_before = work_left(block);
+        const std::uint32_t samples_before = block.end_sample;
+        while (!block.settled && block.end_sample < target) {
+            const std::uint32_t first = film_.first_sample(), look = first + next_noise_look(block.end_sample - first);
+            trace_(scene_, intersector_, film_.block_window(index), std::min(target, look), film_, block);
+            if (block.end_sample == look && film_.noise_floor() >= 0.0) look_at_noise(film_, index, limits_.noise);
+        }
+        const PixelWindow window = film_.block_window(index);
+        new_paths_ += std::int64_t(block.end_sample - samples_before) * window.width() * window.height();
+        work_done_ += work_before - work_left(block);
+    }
+
+    const HostScene& scene_;
+    const EmbreeScene& intersector_;
+    const RenderLimits limits_;
+    Film& film_;
+    const std::function<void(const RenderProgress&)>& progress_;
+    const BlockTracer trace_;
+    const bool groups_whole_;
+    const Stopwatch watch_;
+    std::int64_t total_work_ = 0;
+    std::atomic<std::int64_t> work_done_ = 0;
+    std::atomic<std::int64_t> new_paths_ = 0;
+};
 
 }  // namespace
 
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(double)>& progress) {
-    const SceneView& view = scene.view();
-    const int tiles_across = (view.width + tile_size - 1) / tile_size, tiles_down = (view.height + tile_size - 1) / tile_size;
-    const int num_tiles = tiles_across * tiles_down;
-    std::vector<TileSums> sums(static_cast<std::size_t>(num_tiles));
-    const double total_work = double(num_tiles) * limits.samples;
-    std::atomic<std::int64_t> work_done = 0;
-    const TileRenderer render = tile_renderer(view.wavelengths);
-    const Stopwatch watch;
-    RenderOutcome outcome;
-
-    for (int done = 0; done < limits.samples && !outcome.interrupted;) {
-        const int end = std::min(limits.samples, done + pass_size(done, watch.seconds(), limits.time_s));
-        tbb::parallel_for(tbb::blocked_range<int>(0, num_tiles, 1), [&](const tbb::blocked_range<int>& range) {
-            for (int tile = range.begin(); tile != range.end() && !interrupt_requested(); ++tile) {
-                render(scene, intersector, tile, done, end, film, sums[std::size_t(tile)]);
-                work_done += end - done;
-                const double by_time = limits.time_s > 0.0 ? watch.seconds() / limits.time_s : 0.0;
-                progress(std::min(1.0, std::max(double(work_done) / total_work, by_time)));
-            }
-        });
-        outcome.interrupted = interrupt_requested();
-        if (!outcome.interrupted) outcome.finished_samples = end;
-        done = end;
-        if (limits.time_s > 0.0 && watch.seconds() >= limits.time_s) break;
-    }
-    // In tile order: floating-point sums must not depend on which thread ended first.
-    for (const TileSums& tile : sums) {
-        add_counters(outcome.counters, tile.counters);
-        outcome.totals.add(tile.totals);
-    }
-    outcome.seconds = watch.seconds();
-    return outcome;
-}
-
-void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std::vector<std::string>& aovs, Image& image) {
-    if (aovs.empty()) return;
-    const SceneView& view = scene.view();
-    const std::size_t old_channels = image.channel_names.size();
-    for (const std::string& aov : aovs) {
-        if (aov == "normal")
-            for (const char* axis : {"normal.X", "normal.Y", "normal.Z"}) image.channel_names.push_back(axis);
-        else
-            image.channel_names.push_back(aov);
-    }
-    const std::size_t channels = image.channel_names.size();
-    std::vector<float> pixels(std::size_t(image.width) * image.height * channels);
-    tbb::parallel_for(0, image.height, [&](int y) {
-        for (int x = 0; x < image.width; ++x) {
-            const std::size_t pixel = std::size_t(y) * image.width + x;
-            float* target = pixels.data() + pixel * channels;
-            std::copy_n(image.pixels.data() + pixel * old_channels, old_channels, target);
-            target += old_channels;
-            const Ray ray = camera_ray(view.camera, (float(x) + 0.5f) / float(view.width), (float(y) + 0.5f) / float(view.height),
-                                       0.0f, 0.0f);
-            RayHit hit;
-            const bool found = intersector.closest(ray, hit);
-            const Surface surface = found ? surface_at(view, hit) : Surface{};
-            for (const std::string& aov : aovs) {
-                if (aov == "object_id") *target++ = found ? float(hit.mesh) : -1.0f;
-                if (aov == "depth") *target++ = found ? hit.distance_mm : 0.0f;
-                if (aov == "grain_id") {
-                    float grain = 0.0f;
-                    if (found && surface.body >= 0 && view.bodies[surface.body].diffraction != Diffraction::none) {
-                        const OpalView& opal = view.bodies[surface.body];
-                        const RigidTransform& transform = opal.world_from_object;
-                        GrainPath walk(opal.grains, transform.local_from_world_point(surface.position),
-                                       transform.local_from_world_direction(-surface.geometric_normal));
-                        float distance = 0.0f;
-                        // Cells begin at once; of voxels, some are cut by the surface.
-                        grain = float(walk.next_grain(0, distance, 3.0f / opal.grains.voxels.voxels_per_mm));
-                    }
-                    *target++ = grain;
-                }
-                if (aov == "normal")
-                    for (const float component : {surface.shading_normal.x, surface.shading_normal.y, surface.shading_normal.z})
-                        *target++ = found ? component : 0.0f;
-            }
-        }
-    });
-    image.pixels = std::move(pixels);
+                         const std::function<void(const RenderProgress&)>& progress) {
+    return RenderRun(scene, intersector, limits, film, progress).run();
 }
 
 }  // namespace opal

@@ -12,25 +12,30 @@
 namespace opal {
 
 struct RenderLimits {
-    int samples = 256;    ///< per pixel
+    int samples = 256;    ///< per pixel: its samples from the film's first up to this one, not counted, are drawn
     double time_s = 0.0;  ///< stop after this long (a started pass is finished); 0: no limit
+    double noise = 0.0;   ///< a block ends when its luminance and its chroma are as quiet as this, see film_noise.h; 0: none does
 };
 
 struct RenderOutcome {
     PathCounters counters;
     SpectrumTotals totals;
-    double seconds = 0.0;
+    double seconds = 0.0;           ///< of this run
+    std::uint64_t new_samples = 0;  ///< drawn in it
     bool interrupted = false;
-    int finished_samples = 0;  ///< passes over the whole picture
+    int finished_samples = 0;  ///< that every pixel has
 };
 
-/// Renders a scene on all CPU cores: TBB over tiles, pass after pass, so that whatever ends it leaves a whole picture. The film's
-/// content depends on the scene alone, not on threads. `progress` gets the fraction done.
-RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(double)>& progress);
+/// How far a render has come, and how fast.
+struct RenderProgress {
+    double fraction = 0.0;  ///< done of what was left to do
+    double paths_per_second = 0.0;
+};
 
-/// Adds the requested channels to a picture from one ray through each pixel's centre: object_id (index in the scene, -1 for
-/// none), grain_id (grain at the surface; 0 for none), depth (mm, 0 for none), normal (.X .Y .Z, world).
-void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std::vector<std::string>& aovs, Image& image);
+/// Renders a scene on all CPU cores, going on from what the film holds: TBB over the film's blocks, pass after pass, so that
+/// whatever ends it leaves a whole picture. The film's content depends on the scene and the limits alone, not on threads, passes
+/// or interruptions. `progress` is called from all threads.
+RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
+                         const std::function<void(const RenderProgress&)>& progress);
 
 }  // namespace opal

@@ -43,10 +43,12 @@ bool triangle_reaches_inside(const FieldView& shape, const Bounds& bounds, const
     if (field_value(shape, centre) - radius_mm >= -0.5f * voxel_mm) return false;
     // Small enough to take the centre for the whole.
     if (radius_mm < 0.25f * voxel_mm) return true;
-    const Vec3 ab = 0.5f * (t.a + t.b), bc = 0.5f * (t.b + t.c), ca = 0.5f * (t.c + t.a);
-    for (const Triangle& part : {Triangle{t.a, ab, ca}, Triangle{ab, t.b, bc}, Triangle{ca, bc, t.c}, Triangle{ab, bc, ca}})
-        if (triangle_reaches_inside(shape, bounds, part)) return true;
-    return false;
+    // Halves across the longest edge: parts of a sliver become compact, where like parts would stay slivers, ever so many.
+    const float ab = length(t.b - t.a), bc = length(t.c - t.b), ca = length(t.a - t.c);
+    const Triangle from_longest = ab >= bc && ab >= ca ? t : (bc >= ca ? Triangle{t.b, t.c, t.a} : Triangle{t.c, t.a, t.b});
+    const auto& [a, b, c] = from_longest;
+    const Vec3 middle = 0.5f * (a + b);
+    return triangle_reaches_inside(shape, bounds, {a, middle, c}) || triangle_reaches_inside(shape, bounds, {middle, b, c});
 }
 
 }  // namespace

@@ -31,13 +31,28 @@ void SpectrumTotals::add(const SpectrumTotals& other) {
     samples += other.samples;
 }
 
-Film::Film(int width, int height, bool spectral, Xyz white)
-    : width_(width),
-      height_(height),
+std::array<double, 3> opponent(const double* rgb) {
+    return {0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], rgb[0] - rgb[1], rgb[2] - 0.5 * (rgb[0] + rgb[1])};
+}
+
+Film::Film(const PixelWindow& window, int full_width, int full_height, bool spectral, Xyz white, std::uint32_t first_sample)
+    : window_(window),
+      full_width_(full_width),
+      full_height_(full_height),
       spectral_(spectral),
       adaptation_(bradford_adaptation(white, srgb_white)),
-      pixels_(std::size_t(width) * height) {
-    if (spectral) spectra_.assign(pixels_.size() * num_bins, 0.0f);
+      first_sample_(first_sample),
+      sums_per_pixel_(spectral ? spectrum_offset + num_bins : spectrum_offset),
+      sums_(std::size_t(window.width()) * window.height() * sums_per_pixel_),
+      counts_(std::size_t(window.width()) * window.height()),
+      blocks_(std::size_t((window.width() + block_edge - 1) / block_edge) * ((window.height() + block_edge - 1) / block_edge)) {
+    for (FilmBlock& block : blocks_) block.end_sample = first_sample;
+}
+
+PixelWindow Film::block_window(int index) const {
+    const int across = (width() + block_edge - 1) / block_edge;
+    const int x0 = index % across * block_edge, y0 = index / across * block_edge;
+    return {x0, y0, std::min(x0 + block_edge, width()), std::min(y0 + block_edge, height())};
 }
 
 void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals) {
@@ -63,7 +78,7 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSamp
         lost_x += lost * double(observer.x);
         lost_y += lost * double(observer.y);
         lost_z += lost * double(observer.z);
-        if (spectral_) spectra_[std::size_t(pixel) * num_bins + bins[i]] += float(in_bin[i]);
+        if (spectral_) sums_[first_sum(pixel) + spectrum_offset + bins[i]] += in_bin[i];
     }
     // Lanes of one sample can share a bin: squares are of the sample's whole contribution to it.
     for (int i = 0; i < sample.count; ++i) {
@@ -83,41 +98,56 @@ void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSamp
     totals.truncated_rgb[2] += lost_rgb.b;
 
     const Rgb3d rgb = rgb_of({x, y, z});
-    Pixel& target = pixels_[pixel];
     const double values[3] = {rgb.r, rgb.g, rgb.b};
+    const std::array<double, 3> opponents = opponent(values);
+    double* const target = sums_.data() + first_sum(pixel);
+    const bool group_ends = (first_sample_ + ++counts_[pixel]) % noise_group == 0;
     for (int c = 0; c < 3; ++c) {
-        target.sum[c] += values[c];
-        target.square[c] += values[c] * values[c];
+        target[sum_offset + c] += values[c];
+        target[square_offset + c] += values[c] * values[c];
+        double& group = target[group_sum_offset + c];
+        group += opponents[c];
+        if (!group_ends) continue;
+        const double mean = group / noise_group;
+        target[group_square_offset + c] += mean * mean;
+        group = 0.0;
     }
-    ++target.samples;
 }
 
 std::uint64_t Film::total_samples() const {
     std::uint64_t total = 0;
-    for (const Pixel& pixel : pixels_) total += pixel.samples;
+    for (const std::uint32_t count : counts_) total += count;
     return total;
 }
 
 Image Film::to_image() const {
     Image image;
-    image.width = width_;
-    image.height = height_;
+    image.width = window_.width();
+    image.height = window_.height();
+    image.x0 = window_.x0;
+    image.y0 = window_.y0;
+    if (window_ != PixelWindow{0, 0, full_width_, full_height_}) {
+        image.full_width = full_width_;
+        image.full_height = full_height_;
+    }
     image.channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "sample_count"};
+    // Fichet et al. 2021; the radiance of each layer is the mean over its wavelengths, per nm.
+    if (spectral_) image.attributes = {{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "W.m^-2.sr^-1"}};
     if (spectral_)
         for (int bin = 0; bin < num_bins; ++bin) image.channel_names.push_back(fmt::format("S0.{}nm", int(bin_centre_nm(bin))));
-    image.pixels.reserve(pixels_.size() * image.channel_names.size());
-    for (std::size_t p = 0; p < pixels_.size(); ++p) {
-        const Pixel& pixel = pixels_[p];
-        const double n = std::max<std::uint32_t>(1, pixel.samples);
-        for (const double sum : pixel.sum) image.pixels.push_back(float(sum / n));
+    image.pixels.reserve(counts_.size() * image.channel_names.size());
+    for (std::size_t p = 0; p < counts_.size(); ++p) {
+        const double* const sums = sums_.data() + first_sum(std::uint32_t(p));
+        const double n = std::max<std::uint32_t>(1, counts_[p]);
+        for (int c = 0; c < 3; ++c) image.pixels.push_back(float(sums[sum_offset + c] / n));
         for (int c = 0; c < 3; ++c) {
-            const double mean = pixel.sum[c] / n;
-            const double variance = n > 1.0 ? std::max(0.0, pixel.square[c] / n - mean * mean) / (n - 1.0) : 0.0;
+            const double mean = sums[sum_offset + c] / n;
+            const double variance = n > 1.0 ? std::max(0.0, sums[square_offset + c] / n - mean * mean) / (n - 1.0) : 0.0;
             image.pixels.push_back(float(variance));
         }
-        image.pixels.push_back(float(pixel.samples));
+        image.pixels.push_back(float(counts_[p]));
         if (spectral_)
-            for (int bin = 0; bin < num_bins; ++bin) image.pixels.push_back(spectra_[p * num_bins + bin] / float(n));
+            for (int bin = 0; bin < num_bins; ++bin) image.pixels.push_back(float(sums[spectrum_offset + bin] / n));
     }
     return image;
 }

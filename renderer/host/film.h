@@ -2,13 +2,15 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
-#include <map>
-#include <string>
+#include <mutex>
+#include <span>
 #include <vector>
 
 #include "formats/colorimetry.h"
 #include "formats/image.h"
+#include "formats/scene.h"
 #include "renderer/core/path_tracer.h"
 
 namespace opal {
@@ -42,38 +44,94 @@ FilmSample film_sample(const PathWavelengths<N>& wavelengths, const PathResult<N
     return {wavelengths.wavelength_nm, wavelengths.pdf_per_nm, result.radiance.v, result.truncated.v, wavelengths.count};
 }
 
-/// Accumulates samples per pixel: linear sRGB sums in double precision, sums of squares for the variance, counts, optional
-/// spectra.
+/// What the film keeps per pixel, in double precision, in this order; with spectral layers their num_bins sums follow. Opponent
+/// colours are luminance, red-green and blue-yellow (`opponent`).
+inline constexpr int sum_offset = 0;           ///< linear sRGB
+inline constexpr int square_offset = 3;        ///< of single samples
+inline constexpr int group_sum_offset = 6;     ///< opponent colour of the group of samples that is not complete
+inline constexpr int group_square_offset = 9;  ///< of the means of complete groups, opponent
+inline constexpr int spectrum_offset = 12;
+
+/// Samples are stratified over a pixel: how much a pixel's mean scatters shows in groups of consecutive samples, not in single
+/// ones. Group g holds the samples [16 g, 16 g + 16).
+inline constexpr std::uint32_t noise_group = 16;
+
+/// Luminance Y, red-green R - G and blue-yellow B - (R + G) / 2 of linear sRGB.
+std::array<double, 3> opponent(const double* rgb);
+
+/// A block's pixels are rendered together, so that a render can be kept, ended and continued block by block.
+inline constexpr int block_edge = 8;
+
+/// How far a block has come. Whoever renders or reads the block's pixels holds the lock.
+struct FilmBlock {
+    mutable std::mutex lock;
+    std::uint32_t end_sample = 0;  ///< its samples from the film's first up to here are in
+    bool settled = false;          ///< quiet enough: no more samples wanted
+    /// Noise when last looked at, see film_noise.h; below 0: not known. Read without the lock.
+    std::atomic<float> luminance_noise = -1.0f, chroma_noise = -1.0f;
+    PathCounters counters;
+    SpectrumTotals totals;
+};
+
+/// Accumulates samples per pixel and remembers how far each block of pixels has come: the exact state of a render, which can be
+/// stored and continued with the same result to the bit.
 class Film {
   public:
-    /// RGB is adapted so that light of the chromaticity `white`, XYZ with Y = 1, is neutral (Bradford); spectra are not.
-    Film(int width, int height, bool spectral, Xyz white = srgb_white);
+    /// For the part `window` of a picture of full_width x full_height pixels. RGB is adapted so that light of the chromaticity
+    /// `white`, XYZ with Y = 1, is neutral (Bradford); spectra are not. Samples come in order from `first_sample` on.
+    Film(const PixelWindow& window, int full_width, int full_height, bool spectral, Xyz white = srgb_white,
+         std::uint32_t first_sample = 0);
+    /// For a whole picture.
+    Film(int width, int height, bool spectral, Xyz white = srgb_white)
+        : Film({0, 0, width, height}, width, height, spectral, white) {}
 
-    /// Adds one path's result to a pixel and to `totals`. Pixels may be filled from different threads, each from one at a time.
+    /// Adds one path's result, the pixel's next sample, to a pixel (counted row by row within the window) and to `totals`. Pixels
+    /// may be filled from different threads, each from one at a time.
     void add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
-    std::uint32_t samples(std::uint32_t pixel) const { return pixels_[pixel].samples; }
+    const PixelWindow& window() const { return window_; }
+    int width() const { return window_.width(); }
+    int height() const { return window_.height(); }
+    bool spectral() const { return spectral_; }
+    std::uint32_t first_sample() const { return first_sample_; }
+    std::uint32_t samples(std::uint32_t pixel) const { return counts_[pixel]; }
     std::uint64_t total_samples() const;
 
-    /// Channels R, G, B (means), variance.R, variance.G, variance.B (of the means), sample_count, and S0.<nm>nm where spectral.
+    int num_blocks() const { return int(blocks_.size()); }
+    FilmBlock& block(int index) { return blocks_[std::size_t(index)]; }
+    const FilmBlock& block(int index) const { return blocks_[std::size_t(index)]; }
+    /// Pixels of a block, within the film's window.
+    PixelWindow block_window(int index) const;
+
+    int sums_per_pixel() const { return sums_per_pixel_; }
+    std::span<const double> sums(std::uint32_t pixel) const {
+        return {sums_.data() + first_sum(pixel), std::size_t(sums_per_pixel_)};
+    }
+    std::span<double> sums(std::uint32_t pixel) { return {sums_.data() + first_sum(pixel), std::size_t(sums_per_pixel_)}; }
+    void set_samples(std::uint32_t pixel, std::uint32_t count) { counts_[pixel] = count; }
+
+    /// Luminance below which noise is no longer relative to a pixel's own; below 0: not known yet.
+    double noise_floor() const { return noise_floor_; }
+    void set_noise_floor(double floor) { noise_floor_ = floor; }
+
+    /// The film's window of the picture. Channels R, G, B (means), variance.R, variance.G, variance.B (of the means),
+    /// sample_count, and S0.<nm>nm where spectral.
     Image to_image() const;
 
   private:
-    struct Pixel {
-        double sum[3] = {};
-        double square[3] = {};
-        std::uint32_t samples = 0;
-    };
-
+    std::size_t first_sum(std::uint32_t pixel) const { return std::size_t(pixel) * std::size_t(sums_per_pixel_); }
     Rgb3d rgb_of(Xyz color) const { return linear_srgb_from_xyz(adaptation_ * color); }
 
-    int width_, height_;
+    PixelWindow window_;
+    int full_width_, full_height_;
     bool spectral_;
     Matrix3 adaptation_;
-    std::vector<Pixel> pixels_;
-    std::vector<float> spectra_;
+    std::uint32_t first_sample_;
+    int sums_per_pixel_;
+    std::vector<double> sums_;
+    std::vector<std::uint32_t> counts_;
+    std::vector<FilmBlock> blocks_;
+    std::atomic<double> noise_floor_ = -1.0;
 };
 
 /// Bin of a wavelength and the bin's width.

@@ -23,6 +23,11 @@ SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
 }
 
+/// The four kinds stand in the same order.
+PixelFilter pixel_filter(const RenderDescription& render) {
+    return {static_cast<PixelFilterKind>(render.filter), float(render.filter_radius_px)};
+}
+
 }  // namespace
 
 Camera make_camera(const CameraDescription& description, int width, int height) {
@@ -42,17 +47,19 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
     return camera;
 }
 
-HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
+HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
     : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
                                      description.render.sampler == SamplerKind::independent})),
       environment_(make_environment(description.environment, description.color.upsampling)) {
+    tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
         materials_.push_back({MaterialModel::diffuse,
                               upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),
                                                                          float(material.albedo[2])})});
+    OpalCache own;
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
-            add_opal(object, description.opal, notices);
+            add_opal(object, (opals ? *opals : own).find(object, description.opal, notices));
         else
             add_mesh(object, description.materials);
     }
@@ -71,13 +78,15 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
     view_.stratified = render.sampler == SamplerKind::stratified;
-    view_.tent_filter = render.filter == FilterKind::tent;
+    view_.filter = pixel_filter(render);
 }
 
-void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
-    opals_.push_back(std::make_unique<OpalBody>(object, settings, notices));
-    meshes_.push_back(opals_.back()->take_surface());
-    add_body(opals_.back()->view(), object.priority);
+void HostScene::add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal) {
+    const RigidTransform transform = object_transform(object);
+    meshes_.push_back(opal->surface());
+    transform_mesh(meshes_.back(), transform);
+    add_body(opal->placed(transform), object.priority);
+    opals_.push_back(std::move(opal));
 }
 
 /// The last mesh bounds it.

@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/command.h"
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
 #include "renderer/host/mesh_data.h"
-#include "renderer/host/opal_body.h"
+#include "renderer/host/opal_cache.h"
 #include "renderer/host/spectrum_tables.h"
 
 namespace opal {
@@ -17,14 +18,18 @@ namespace opal {
 /// Everything a scene needs in memory, and the plain view of it that the transport reads. Not movable: the view points inside.
 class HostScene {
   public:
-    /// Loads all that the description names. Throws InputError. Notices for the user are appended to `notices`.
-    HostScene(const SceneDescription& description, std::vector<std::string>& notices);
+    /// Loads all that the description names, but for opals that `opals` knows. Throws InputError. Notices for the user are
+    /// appended to `notices`.
+    HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals = nullptr);
     HostScene(const HostScene&) = delete;
     HostScene& operator=(const HostScene&) = delete;
 
     const SceneView& view() const { return view_; }
     const std::vector<MeshData>& meshes() const { return meshes_; }
     const EnvironmentMap& environment() const { return environment_; }
+
+    /// What preparing the tables of light, colours and spectra took.
+    double tables_seconds() const { return tables_s_; }
 
     /// Of the opal that has most; see OpalBody.
     int reciprocal_points() const;
@@ -35,20 +40,22 @@ class HostScene {
     const std::string& recipe_toml() const;
 
   private:
-    void add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices);
+    void add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal);
     void add_body(const OpalView& view, int priority);
     void order_bodies();
     void add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials);
 
+    const Stopwatch watch_;
     SpectrumTablesData spectra_;
     EnvironmentMap environment_;
     std::vector<MaterialView> materials_;
     std::vector<MeshData> meshes_;
     std::vector<MeshView> mesh_views_;
-    std::vector<std::unique_ptr<OpalBody>> opals_;
+    std::vector<std::shared_ptr<const OpalBody>> opals_;
     std::vector<OpalView> bodies_;
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
     SceneView view_;
+    double tables_s_ = 0.0;
 };
 
 /// The camera of a description for a picture of the given size.

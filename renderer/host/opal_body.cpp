@@ -84,10 +84,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.diffraction = transport_model(settings.diffraction);
     opal.ewald_tolerance = float(settings.ewald_tolerance);
     opal.max_odds = float(settings.max_odds);
-    opal.world_from_object = object_transform(object);
-
     surface_ = surface_from_level_set(*asset.shape, file);
-    transform_mesh(surface_, opal.world_from_object);
 
     grains_ = std::make_unique<GrainSource>(asset, settings.grains, file, notices);
     opal.grains = grains_->view();
@@ -116,7 +113,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     if (constants.mosaic_spread_deg > 0.0)
         opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
 
-    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(opal.world_from_object.scale), file);
+    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(float(object.scale)), file);
     medium_fields_->attach(opal.medium);
     const double sigma_a_scale = medium_fields_->constant(MediumField::sigma_a_scale);
     const double sigma_s_mie_per_mm = medium_fields_->constant(MediumField::sigma_s_mie);

@@ -21,17 +21,23 @@ struct OpticalTables {
     bool surface_disperses = false;
 };
 
-/// One opal of a scene in memory. Not movable: its view points inside.
+/// One opal in memory, wherever scenes have it. Not movable: its view points inside.
 class OpalBody {
   public:
-    /// Loads the object's file. Throws InputError. Notices for the user are appended to `notices`.
+    /// Loads the object's file; of where the object stands nothing is kept but its scale. Throws InputError. Notices for the user
+    /// are appended to `notices`.
     OpalBody(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices);
     OpalBody(const OpalBody&) = delete;
     OpalBody& operator=(const OpalBody&) = delete;
 
-    const OpalView& view() const { return view_; }
-    /// Hands over the surface in world space.
-    MeshData take_surface() { return std::move(surface_); }
+    /// As a body that stands there; the scale must be the object's.
+    OpalView placed(const RigidTransform& world_from_object) const {
+        OpalView view = view_;
+        view.world_from_object = world_from_object;
+        return view;
+    }
+    /// In object space.
+    const MeshData& surface() const { return surface_; }
 
     /// Reciprocal-lattice points inside the limiting sphere, the origin counted.
     int reciprocal_points() const { return reciprocal_points_; }

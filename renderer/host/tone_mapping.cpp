@@ -18,8 +18,9 @@ float shoulder(float value) {
 
 }  // namespace
 
-Image tone_mapped(const Image& linear, double exposure_ev) {
+Image tone_mapped(const Image& linear, double exposure_ev, ToneCurve tone) {
     const float exposure = float(std::exp2(exposure_ev));
+    const int channels[3] = {linear.find_channel("R"), linear.find_channel("G"), linear.find_channel("B")};
     Image display;
     display.width = linear.width;
     display.height = linear.height;
@@ -28,16 +29,22 @@ Image tone_mapped(const Image& linear, double exposure_ev) {
     for (int y = 0; y < linear.height; ++y)
         for (int x = 0; x < linear.width; ++x) {
             const float* pixel = linear.pixel(x, y);
-            float rgb[3] = {pixel[0] * exposure, pixel[1] * exposure, pixel[2] * exposure};
+            float rgb[3] = {pixel[channels[0]] * exposure, pixel[channels[1]] * exposure, pixel[channels[2]] * exposure};
             const float luminance = std::max(0.0f, 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
             const float lowest = std::min({rgb[0], rgb[1], rgb[2]});
             if (lowest < 0.0f) {
                 const float keep = luminance > 0.0f ? luminance / (luminance - lowest) : 0.0f;
                 for (float& c : rgb) c = std::max(0.0f, luminance + keep * (c - luminance));
             }
-            const float brightest = std::max({rgb[0], rgb[1], rgb[2]});
-            const float scale = brightest > 0.0f ? shoulder(brightest) / brightest : 0.0f;
-            for (const float c : rgb) display.pixels.push_back(float(srgb_encoded(double(c * scale))));
+            float scale = 1.0f;
+            if (tone == ToneCurve::filmic) {
+                const float brightest = std::max({rgb[0], rgb[1], rgb[2]});
+                scale = brightest > 0.0f ? shoulder(brightest) / brightest : 0.0f;
+            }
+            for (const float c : rgb) {
+                const float value = std::min(1.0f, c * scale);
+                display.pixels.push_back(tone == ToneCurve::none ? value : float(srgb_encoded(double(value))));
+            }
         }
     return display;
 }

@@ -43,6 +43,25 @@ TEST(Scene, ResolvedTextReadsBackToTheSameText) {
     EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
 }
 
+TEST(Scene, FilterRadiusFollowsTheFilter) {
+    EXPECT_EQ(parse(minimal).render.filter_radius_px, 1.0);
+    EXPECT_EQ(parse(minimal + "[render]\nfilter = \"box\"\n").render.filter_radius_px, 0.5);
+    EXPECT_EQ(parse(minimal + "[render]\nfilter = \"gaussian\"\n").render.filter_radius_px, 1.5);
+    EXPECT_EQ(parse(minimal + "[render]\nfilter = \"blackman-harris\"\n").render.filter_radius_px, 2.0);
+    EXPECT_EQ(parse(minimal + "[render]\nfilter = \"box\"\nfilter_radius_px = 2\n").render.filter_radius_px, 2.0);
+}
+
+TEST(Scene, CropLiesWithinThePicture) {
+    const std::string small = minimal + "[render]\nwidth = 64\nheight = 48\ncrop = ";
+    EXPECT_EQ(parse(small + "[8, 16, 64, 17]\n").render.window(), (PixelWindow{8, 16, 64, 17}));
+    EXPECT_EQ(parse(minimal).render.window(), (PixelWindow{0, 0, 960, 720}));
+    for (const char* bad : {"[0, 0, 65, 48]", "[0, 0, 64, 49]", "[-1, 0, 4, 4]", "[4, 0, 4, 4]", "[0, 5, 4, 4]"})
+        EXPECT_INPUT_ERROR(parse(small + bad + "\n"),
+                           "is no part of the picture; allowed: [x0, y0, x1, y1] with 0 <= x0 < x1 <= 64");
+    for (const char* bad : {"[0, 0, 4]", "3", "[0, 0, 4, 4.5]", "[0, 0, 4, 4, 4]"})
+        EXPECT_INPUT_ERROR(parse(small + bad + "\n"), "render.crop: expected");
+}
+
 TEST(Scene, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse(""), "the scene is empty");
     EXPECT_INPUT_ERROR(parse(minimal + "[render]\nsamples = 0\n"), "folder/s.toml:5:11: render.samples: 0 is out of range");

@@ -7,8 +7,10 @@
 
 #include <cmath>
 
+#include "formats/film_settings.h"
 #include "formats/random.h"
 #include "formats/scene.h"
+#include "renderer/cpu/aovs.h"
 
 namespace opal {
 
@@ -99,9 +101,9 @@ Rendered render_text(const std::string& scene_toml, int samples) {
     std::vector<std::string> notices;
     const HostScene host(scene, notices);
     const EmbreeScene intersector(host.meshes());
-    Film film(scene.render.width, scene.render.height, scene.film.spectral, xyz_of(illuminant_spectrum(scene.film.white)));
+    Film film(scene.render.window(), scene.render.width, scene.render.height, scene.film.spectral, film_white(scene.film));
     Rendered rendered;
-    rendered.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](double) {});
+    rendered.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {});
     rendered.image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, rendered.image);
     return rendered;

@@ -5,6 +5,7 @@
 #include "formats/units.h"
 #include "renderer/core/camera.h"
 #include "renderer/core/medium_flight.h"
+#include "renderer/core/pixel_filter.h"
 #include "renderer/core/surface_scattering.h"
 #include "renderer/host/environment_map.h"
 
@@ -28,8 +29,43 @@ TEST(Samplers, CosineHemisphere) {
     }
 }
 
-TEST(Samplers, TentFilter) {
-    EXPECT_TRUE(check_inversion("tent filter", -1.0, 1.0, sample_tent, [](double x) { return 1.0 - std::abs(x); }));
+TEST(Samplers, PixelFilters) {
+    const std::pair<const char*, PixelFilter> filters[] = {{"tent", {PixelFilterKind::tent, 1.0f}},
+                                                           {"wide tent", {PixelFilterKind::tent, 1.75f}},
+                                                           {"box", {PixelFilterKind::box, 0.5f}},
+                                                           {"gaussian", {PixelFilterKind::gaussian, 1.5f}},
+                                                           {"blackman-harris", {PixelFilterKind::blackman_harris, 2.0f}}};
+    for (const auto& [name, filter] : filters) {
+        const double radius = double(filter.radius_px);
+        EXPECT_TRUE(check_inversion(
+            name, -radius, radius, [&](float u) { return sample_pixel_filter(filter, u); },
+            [&](double x) { return double(pixel_filter_density(filter, float(x))); }));
+    }
+}
+
+/// Against the filters' own formulas: a tent of radius one, a Gaussian cut at three standard deviations, Harris's window.
+TEST(PixelFilter, DensitiesAreTheFilters) {
+    EXPECT_FLOAT_EQ(pixel_filter_density({PixelFilterKind::tent, 1.0f}, -0.25f), 0.75f);
+    EXPECT_EQ(pixel_filter_density({PixelFilterKind::box, 0.5f}, 0.49f), 1.0f);
+    EXPECT_EQ(pixel_filter_density({PixelFilterKind::box, 0.5f}, 0.51f), 0.0f);
+    const PixelFilter gaussian{PixelFilterKind::gaussian, 1.5f};
+    EXPECT_NEAR(pixel_filter_density(gaussian, 0.7f) / pixel_filter_density(gaussian, 0.0f), std::exp(-0.5 * 1.96), 1.0e-6);
+    const PixelFilter window{PixelFilterKind::blackman_harris, 2.0f};
+    EXPECT_NEAR(pixel_filter_density(window, 1.0f) / pixel_filter_density(window, 0.0f), 0.35875 - 0.14128, 1.0e-6);
+    EXPECT_NEAR(pixel_filter_density(window, 2.0f) / pixel_filter_density(window, 0.0f), 6.0e-5, 1.0e-6);
+}
+
+/// Strata of numbers stay strata of places.
+TEST(PixelFilter, SamplingIsMonotone) {
+    for (const PixelFilterKind kind : {PixelFilterKind::gaussian, PixelFilterKind::blackman_harris, PixelFilterKind::tent}) {
+        float last = -2.0f;
+        for (int i = 0; i < 4096; ++i) {
+            const float x = sample_pixel_filter({kind, 2.0f}, float(i) / 4096.0f);
+            EXPECT_GE(x, last - 4.0e-6f) << i;
+            last = x;
+        }
+        EXPECT_LE(last, 2.0f);
+    }
 }
 
 TEST(Samplers, LensDisc) {

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <set>
+
+#include "plane_scene.h"
+#include "renderer/host/film_noise.h"
+
+namespace opal {
+namespace {
+
+TEST(FilmNoise, LooksComeInWholeGroupsAndGrowByAQuarter) {
+    std::vector<std::uint32_t> looks;
+    for (std::uint32_t n = 0; looks.size() < 9; n = looks.back()) looks.push_back(next_noise_look(n));
+    EXPECT_EQ(looks, (std::vector<std::uint32_t>{32, 48, 64, 80, 112, 144, 192, 240, 304}));
+    // From anywhere between two looks the next one is the same.
+    EXPECT_EQ(next_noise_look(65), 80u);
+    EXPECT_EQ(next_noise_look(79), 80u);
+}
+
+/// The noise that one picture states, against how pictures from 40 seeds scatter: mean squares over 720 pixels. Of independent
+/// samples both estimate the same: 39 degrees of freedom in each pixel give the ratio a standard error of about
+/// sqrt(2 / (39 * 720)) = 0.8 % if pixels' samples were normal; they have heavy tails: 5 % allowed. Stratified samples scatter at
+/// most as much as groups of them say.
+TEST(FilmNoise, StatesHowMuchPicturesScatter) {
+    for (const bool stratified : {false, true}) {
+        double stated[2] = {}, sum_of_squares[2] = {};
+        std::vector<std::array<double, 3>> sums, squares;
+        constexpr int seeds = 40, samples = 64;
+        std::uint32_t pixels = 0;
+        std::vector<double> scale;
+        for (int seed = 1; seed <= seeds; ++seed) {
+            const PlaneScene scene({"film.spectral=false", "render.seed=" + std::to_string(seed),
+                                    std::string("render.sampler=\"") + (stratified ? "stratified\"" : "independent\"")});
+            const auto film = scene.film();
+            scene.render(*film, samples);
+            pixels = std::uint32_t(film->width() * film->height());
+            sums.resize(pixels);
+            squares.resize(pixels);
+            for (std::uint32_t p = 0; p < pixels; ++p) {
+                const std::array<double, 3> color = opponent(film->sums(p).data());
+                for (std::size_t c = 0; c < 3; ++c) {
+                    sums[p][c] += color[c] / samples;
+                    squares[p][c] += color[c] / samples * color[c] / samples;
+                }
+            }
+            for (int b = 0; b < film->num_blocks(); ++b) {
+                const PixelWindow window = film->block_window(b);
+                const double weight = double(window.width() * window.height()) / seeds;
+                const NoiseLevel noise = block_noise(*film, b);
+                stated[0] += weight * noise.luminance * noise.luminance;
+                stated[1] += weight * noise.chroma * noise.chroma;
+            }
+        }
+        for (std::uint32_t p = 0; p < pixels; ++p) {
+            double variance[3];
+            for (std::size_t c = 0; c < 3; ++c) variance[c] = (squares[p][c] - sums[p][c] * sums[p][c] / seeds) / (seeds - 1);
+            const double luminance = sums[p][0] / seeds;
+            sum_of_squares[0] += variance[0] / (luminance * luminance);
+            sum_of_squares[1] += 0.5 * (variance[1] + variance[2]) / (luminance * luminance);
+        }
+        for (int c = 0; c < 2; ++c) {
+            const double ratio = std::sqrt(stated[c] / sum_of_squares[c]);
+            std::printf("%s, %s: stated over measured noise %.3f (noise %.4f)\n", stratified ? "stratified" : "independent",
+                        c == 0 ? "luminance" : "chroma", ratio, std::sqrt(stated[c] / pixels));
+            if (stratified) {
+                EXPECT_GT(ratio, 0.95);
+                EXPECT_LT(ratio, 2.0);
+            } else {
+                EXPECT_NEAR(ratio, 1.0, 0.05);
+            }
+        }
+    }
+}
+
+TEST(FilmNoise, RendersUntilQuietWithTheSameBitsFromAnyNumberOfThreads) {
+    const PlaneScene scene({"render.width=96", "render.height=72"});
+    const double noise = 0.06;
+    constexpr int most = 400;
+    const auto film = scene.film();
+    scene.render(*film, most, noise);
+    int settled = 0;
+    std::set<std::uint32_t> counts;
+    for (int b = 0; b < film->num_blocks(); ++b) {
+        const FilmBlock& block = film->block(b);
+        const double larger = std::max(block.luminance_noise, block.chroma_noise);
+        counts.insert(block.end_sample);
+        settled += block.settled ? 1 : 0;
+        EXPECT_EQ(block.settled, larger <= noise) << b;
+        EXPECT_TRUE(block.settled || block.end_sample == std::uint32_t(most)) << b;
+        EXPECT_GE(block.end_sample, least_samples_for_noise);
+    }
+    EXPECT_GE(counts.size(), 4u) << "places differ in what they need";
+    EXPECT_GT(settled, film->num_blocks() / 2);
+    const std::optional<PictureNoise> stated = picture_noise(*film);
+    ASSERT_TRUE(stated);
+    EXPECT_LE(stated->median.larger(), noise);
+    EXPECT_GE(stated->percentile_95.luminance, stated->median.luminance);
+
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    const auto again = scene.film();
+    scene.render(*again, most, noise);
+    EXPECT_EQ(film->to_image().pixels, again->to_image().pixels);
+}
+
+TEST(FilmNoise, BlackEndsAtOnceAndFewSamplesTellNothing) {
+    const PlaneScene black({"environment.radiance=0"});
+    const auto film = black.film();
+    EXPECT_EQ(black.render(*film, 1000, 0.01).finished_samples, int(least_samples_for_noise));
+    EXPECT_EQ(film->total_samples(), 720u * least_samples_for_noise);
+    const PlaneScene lit;
+    const auto few = lit.film();
+    lit.render(*few, 31);
+    EXPECT_FALSE(picture_noise(*few));
+}
+
+}  // namespace
+}  // namespace opal
