@@ -71,8 +71,8 @@ openvdb::Vec3d place_of(const CellSite& site) {
 
 }  // namespace
 
-CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const openvdb::BBoxd& box_mm)
-    : sites_(sites), tree_(tree), box_mm_(box_mm) {
+CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const ConvexBounds& bounds)
+    : sites_(sites), tree_(tree), bounds_(bounds) {
     for (int patch = 0; patch < coarse_patches; ++patch) {
         const PatchGeometry& geometry = patch_table()[std::size_t(patch)];
         centre_x_[patch] = float(geometry.x);
@@ -121,11 +121,9 @@ void CellNeighborSearch::gather(std::uint32_t site) {
     std::fill(std::begin(lowest_), std::end(lowest_), 0.0f);
     std::fill(std::begin(best_), std::end(best_), 0.0f);
     std::fill(std::begin(winner_), std::end(winner_), 0.0f);
-    for (int face = 0; face < 6; ++face) {
-        const int axis = face / 2;
-        const double distance_mm = face % 2 == 0 ? box_mm_.max()[axis] - place[axis] : place[axis] - box_mm_.min()[axis];
-        const openvdb::Vec3d slope = direction_of(face, 0.0, 0.0) / distance_mm;
-        offer({slope, 0.0, 1.0 / distance_mm, -1});
+    for (const BoundingPlane& plane : bounds_.planes()) {
+        const double distance_mm = plane.offset_mm - plane.normal.dot(place);
+        offer({plane.normal / distance_mm, 0.0, 1.0 / distance_mm, -1});
     }
     double lowest = 0.0;
     // kappa_j <= 2 / (|g| - D), and |g| - D is at least the gap.

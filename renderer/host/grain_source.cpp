@@ -52,10 +52,11 @@ GrainMethod choose_method(const OpalAsset& asset, GrainsKind asked, const std::s
     return method;
 }
 
-openvdb::BBoxd bounds_mm(const openvdb::FloatGrid& shape) {
-    const openvdb::CoordBBox voxels = shape.evalActiveVoxelBoundingBox();
-    openvdb::BBoxd bounds(shape.indexToWorld(voxels.min()), shape.indexToWorld(voxels.max()));
-    bounds.expand(shape.voxelSize().x());
+/// About all that the surface made from a level set encloses.
+ConvexBounds bounds_of(const openvdb::FloatGrid& shape) {
+    ConvexBounds bounds;
+    bounds.hold_inside(shape);
+    bounds.widen(2.0 * shape.voxelSize().x());
     return bounds;
 }
 
@@ -81,7 +82,7 @@ bool agree(const openvdb::Int32Grid& grain_id, const CellField& cells) {
 
 GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file, std::vector<std::string>& notices)
     : method_(choose_method(asset, asked, file)) {
-    if (method_ != GrainMethod::voxels) cells_ = std::make_unique<CellData>(asset.sites, bounds_mm(*asset.shape));
+    if (method_ != GrainMethod::voxels) cells_ = std::make_unique<CellData>(asset.sites, bounds_of(*asset.shape));
     if (asked == GrainsKind::automatic && cells_ && asset.grain_id && !agree(*asset.grain_id, cells_->field())) {
         notices.push_back(file + ": grain_id is not made of the cells of its sites; the grains are taken from its voxels");
         method_ = GrainMethod::voxels;

@@ -92,7 +92,9 @@ class GrainsBench {
         GrainsBenchRow row;
         row.weights = weights;
         row.sites = count;
-        const openvdb::BBoxd bounds = shape_->bounds_mm();
+        ConvexBounds bounds;
+        bounds.hold_inside(*shape_->level_set(0.1));
+        bounds.widen(0.2);
         const Stopwatch watch;
         const CellData cells(sites_, bounds);
         const double build_s = watch.seconds();

@@ -34,7 +34,7 @@ SmallOpal colourful() {
 TEST(GrainSource, CellsShowWhatFineVoxelsShow) {
     const ScratchFolder folder;
     write_opal_asset(colourful().make(), folder / "opal.vdb");
-    const int samples = 300;
+    const int samples = 200;
     // Uniform light: what differs is how long the light stays, and where it leaves.
     const std::string light = "[environment]\nkind = \"constant\"\n";
     const Rendered cells = render_text(scene_of(folder / "opal.vdb", light + "[opal]\ngrains = \"cells\"\n"), samples);
