@@ -73,6 +73,8 @@ openvdb::Vec3d place_of(const CellSite& site) {
 
 CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const ConvexBounds& bounds)
     : sites_(sites), tree_(tree), bounds_(bounds) {
+    const openvdb::Vec3d extents_mm = bounds.box_mm().extents();
+    near_mm_ = 4.0 * std::cbrt(extents_mm.x() * extents_mm.y() * extents_mm.z() / double(sites.size()));
     for (int patch = 0; patch < coarse_patches; ++patch) {
         const PatchGeometry& geometry = patch_table()[std::size_t(patch)];
         centre_x_[patch] = float(geometry.x);
@@ -121,8 +123,11 @@ void CellNeighborSearch::gather(std::uint32_t site) {
     std::fill(std::begin(lowest_), std::end(lowest_), 0.0f);
     std::fill(std::begin(best_), std::end(best_), 0.0f);
     std::fill(std::begin(winner_), std::end(winner_), 0.0f);
-    for (const BoundingPlane& plane : bounds_.planes()) {
+    // The first six bound every cell; others only shorten the search, and do so where they are near.
+    for (std::size_t n = 0; n < bounds_.planes().size(); ++n) {
+        const BoundingPlane& plane = bounds_.planes()[n];
         const double distance_mm = plane.offset_mm - plane.normal.dot(place);
+        if (n >= 6 && distance_mm > near_mm_) continue;
         offer({plane.normal / distance_mm, 0.0, 1.0 / distance_mm, -1});
     }
     double lowest = 0.0;

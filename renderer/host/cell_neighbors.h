@@ -64,6 +64,7 @@ class CellNeighborSearch {
     const std::vector<CellSite>& sites_;
     const SiteTree& tree_;
     const ConvexBounds& bounds_;
+    double near_mm_;  ///< a few times the distance between sites
 
     // The coarse patches' centres and how far their corners are from them. Single precision is far below near misses.
     float centre_x_[coarse_patches], centre_y_[coarse_patches], centre_z_[coarse_patches], reach_[coarse_patches];
