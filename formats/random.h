@@ -59,6 +59,7 @@ enum class RandomStream : std::uint32_t {
     field_grains = 12,
     site_orientations = 13,
     bench = 14,
+    sobol_scramble = 15,
 };
 
 /// Block of four words for (seed, stream, index, block); the dimension is 4 * block + word.

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/material.h"
+
 namespace opal {
 
-enum class SamplerKind { stratified, independent };
+enum class SamplerKind { sobol, stratified, independent };
+enum class LightSamplingKind { both, connections, scattering };
 enum class FilterKind { tent, box, gaussian, blackman_harris };
 enum class CameraKind { perspective, orthographic };
 enum class EnvironmentKind { studio, constant, file };
@@ -18,9 +21,9 @@ enum class IlluminantKind { d65, a, equal_energy, blackbody, led, file };
 enum class Upsampling { jakob_hanika, smits, basis };
 enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
 enum class Dispersion { full, bands, none };
+enum class LightKind { area, sphere, spot, sun };
 enum class MajorantKind { local, global };
 enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
-enum class MaterialKind { diffuse };
 /// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
 /// values linear, cut at 1.
 enum class ToneCurve { filmic, srgb, none };
@@ -43,6 +46,8 @@ struct RenderDescription {
     int max_bounces = 64;
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::stratified;
+    LightSamplingKind light_sampling = LightSamplingKind::both;
+    bool guided = true;  ///< scattered light is drawn towards where photons came from
     FilterKind filter = FilterKind::tent;
     double filter_radius_px = 1.0;
     std::optional<PixelWindow> crop;  ///< the part of the picture that is drawn; unset: all
@@ -80,6 +85,29 @@ struct EnvironmentDescription {
     std::filesystem::path illuminant_file;            ///< .csv
 };
 
+/// A light beside the environment. Radiance is in the film's unit: 1 shows as white.
+struct LightDescription {
+    LightKind kind = LightKind::area;
+    std::array<double, 3> position_mm = {0.0, 0.0, 100.0};  ///< centre
+    std::array<double, 3> target_mm = {0.0, 0.0, 0.0};      ///< area, spot: what the light looks at
+    std::array<double, 3> up = {0.0, 0.0, 1.0};             ///< rectangle: its height runs this way
+    bool disk = false;                                      ///< area: a disk of `radius_mm` instead of a rectangle
+    double width_mm = 20.0, height_mm = 20.0;               ///< rectangle
+    double radius_mm = 1.0;                                 ///< disk, sphere, spot
+    double cone_deg = 40.0;                                 ///< spot: full angle of the cone, beyond which it is dark
+    double blend = 0.15;                                    ///< spot: part of the cone's half angle over which it fades
+    double elevation_deg = 45.0;                            ///< sun: above the horizon
+    double azimuth_deg = 0.0;                               ///< sun: counter-clockwise from +X, seen from above
+    double angular_diameter_deg = 0.53;                     ///< sun
+    double irradiance = 3.141592653589793;            ///< sun: on a surface that faces it; pi makes a white surface show as white
+    double radiance = 100.0;                          ///< all but the sun
+    std::array<double, 3> color = {1.0, 1.0, 1.0};    ///< linear sRGB, 0 to 1, times the illuminant
+    IlluminantKind illuminant = IlluminantKind::d65;  ///< its own, whatever the environment's
+    double temperature_k = 4000.0;                    ///< blackbody, led
+    std::filesystem::path illuminant_file;            ///< .csv
+    bool visible = true;                              ///< to the camera directly
+};
+
 struct OpalDescription {
     DiffractionModel diffraction = DiffractionModel::two_beam;
     double ewald_tolerance = 0.01;  ///< ewald-fresnel: largest deviation of |w + (lambda/n) G| from 1
@@ -94,11 +122,8 @@ struct OpalDescription {
     bool operator==(const OpalDescription&) const = default;
 };
 
-struct MaterialDescription {
-    std::string name;
-    MaterialKind kind = MaterialKind::diffuse;
-    std::array<double, 3> albedo = {0.5, 0.5, 0.5};  ///< linear sRGB reflectance
-};
+/// The least roughness of a surface that is not smooth.
+inline constexpr double min_scene_roughness = 1.0e-3;
 
 struct ObjectDescription {
     ObjectKind kind = ObjectKind::opal;
@@ -112,8 +137,11 @@ struct ObjectDescription {
     double height_mm = 2.0;   ///< cylinder: from z = 0 down to -height, so that things stand on it
     double bevel_mm = 0.3;    ///< cylinder: rounding of its upper edge
     double size_mm = 2000.0;  ///< plane: edge of the square
-    int priority = 0;         ///< opal: where bodies overlap the one of higher priority is there; of equal ones the later
-    std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
+    int priority = 0;  ///< opal, dielectric: where bodies overlap the one of higher priority is there; of equal ones the later
+    std::optional<double> smooth_normals_deg;  ///< mesh: faces that meet at less share a normal; unset: as the file says
+    double roughness = 0.0;                    ///< opal: GGX alpha of its surface; 0: polished
+    bool exact = false;                        ///< opal: its Bezier patches themselves, not the level set's surface
+    std::uint64_t orientation_seed = 1;        ///< opal made elsewhere: seed of its grains' orientations
 
     bool operator==(const ObjectDescription&) const = default;
 };
@@ -144,6 +172,7 @@ struct SceneDescription {
     OpalDescription opal;
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;
+    std::vector<LightDescription> lights;
     AnimationDescription animation;
 };
 

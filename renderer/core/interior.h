@@ -4,6 +4,7 @@
 #include "renderer/core/beam_exchange.h"
 #include "renderer/core/ewald_turn.h"
 #include "renderer/core/grain_visit.h"
+#include "renderer/core/guided_scattering.h"
 #include "renderer/core/medium_flight.h"
 
 /// Transport inside the opal: grains met one after another, each with its planes; scattering and absorption on the way.
@@ -93,14 +94,16 @@ OPAL_HD inline float clearance_mm(const OpalView& opal, Vec3 position) {
     return max_of(0.0f, depth_mm - 1.0f / opal.shape.voxels_per_mm) * opal.world_from_object.scale;
 }
 
-/// Makes the event, whose direction is that before, a scattering.
+/// Makes the event, whose position is known and whose direction is that before, a scattering.
 template <int N>
 OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wavelengths, const LaneMedium<N>& medium,
                             GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random, PathCounters& counters,
                             InteriorEvent& event) {
     ++counters.scatterings;
     event.kind = InteriorEventKind::scattering;
-    event.direction = scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
+    event.direction = opal.guide.cdf ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
+                                                                event.direction, weights, random)
+                                     : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
     visit.renew();
 }
 

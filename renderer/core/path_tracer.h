@@ -4,9 +4,10 @@
 #include "renderer/core/bsdf.h"
 #include "renderer/core/interior.h"
 #include "renderer/core/scene_view.h"
+#include "renderer/core/surface_probe.h"
 
-/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&): Embree on the
-/// CPU.
+/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&, float max_mm):
+/// Embree on the CPU.
 namespace opal {
 
 /// What one path found, per lane, before the division by the lane's wavelength density.
@@ -14,30 +15,6 @@ template <int N>
 struct PathResult {
     Lanes<N> radiance;
     Lanes<N> truncated;  ///< throughput thrown away at the bounce limit: what unit radiance would have added
-};
-
-/// The surface ahead of a ray, looked for when it is first asked for.
-template <class Intersector>
-class SurfaceProbe {
-  public:
-    OPAL_HD SurfaceProbe(const Intersector& intersector, const Ray& ray) : intersector_(intersector), ray_(ray) {}
-
-    OPAL_HD bool found() {
-        if (!asked_) found_ = intersector_.closest(ray_, hit_);
-        asked_ = true;
-        return found_;
-    }
-    /// 0 where there is none.
-    OPAL_HD float distance_mm() { return found() ? hit_.distance_mm : 0.0f; }
-    /// Once found.
-    OPAL_HD const RayHit& hit() const { return hit_; }
-
-  private:
-    const Intersector& intersector_;
-    const Ray& ray_;
-    RayHit hit_;
-    bool asked_ = false;
-    bool found_ = false;
 };
 
 /// The illuminant at a path's wavelengths, looked up once.
@@ -82,9 +59,9 @@ class PathTracer {
   private:
     OPAL_HD void follow(Ray ray, int bounce) {
         while (true) {
-            SurfaceProbe<Intersector> ahead(intersector_, ray);
+            SurfaceProbe<Intersector> ahead(intersector_, scene_.lights, ray, bounce == 0);
             const int body = bodies_.current();
-            if (bounce >= scene_.max_bounces && (body >= 0 || ahead.found())) {
+            if (bounce >= scene_.max_bounces && (body >= 0 || (ahead.found() && !ahead.meets_light()))) {
                 const Lanes<N> lost = weights_.contribution();
                 for (int i = 0; i < weights_.count; ++i) result_.truncated.v[i] += lost.v[i];
                 ++counters_.truncated_paths;
@@ -112,21 +89,28 @@ class PathTracer {
                 }
             }
             if (!ahead.found()) {
-                add_environment(ray.direction);
+                add_distant_lights(ray.direction);
+                return;
+            }
+            if (ahead.meets_light()) {
+                if (ahead.light().shines) add_met_light(ray.direction, ahead.light().light);
                 return;
             }
             const Surface surface = surface_at(scene_, ahead.hit());
             if (surface.body >= 0) {
                 const bool entering = dot(ray.direction, surface.geometric_normal) < 0.0f;
                 const NestedBodies beyond = entering ? bodies_.entered(surface.body) : bodies_.left(surface.body);
-                if (beyond.current() == body) {
-                    // Another body, of higher priority, is on both sides: there is no surface here.
+                if (object_of(beyond.current()) == object_of(body)) {
+                    // The same object, of higher priority, is on both sides: there is no surface here.
                     bodies_ = beyond;
                     visit_.clear_mm = 0.0f;
                     ray = leaving(surface, ray.direction);
                     continue;
                 }
-                ray = meet_body(ray, surface, beyond, bounce);
+                if (scene_.bodies[surface.body].roughness < min_roughness)
+                    ray = meet_body(ray, surface, beyond, bounce);
+                else if (!meet_rough_body(ray, surface, beyond))
+                    return;
             } else if (!meet_opaque(ray, surface)) {
                 return;
             }
@@ -141,6 +125,9 @@ class PathTracer {
         optics_ = lane_optics(scene_.bodies[body], wavelengths_);
         loaded_body_ = body;
     }
+
+    /// -1 in the open.
+    OPAL_HD int object_of(int body) const { return body < 0 ? -1 : scene_.bodies[body].object; }
 
     OPAL_HD void lane_indices(int body, float* index) {
         for (int i = 0; i < N; ++i)
@@ -200,49 +187,115 @@ class PathTracer {
         interaction.direction = ray.direction;
         lane_indices(bodies_.current(), interaction.index_before);
         // From inside a body the lights are behind its surface, where no straight line leads.
-        connected_ = bodies_.current() < 0 && connects_to_lights(material);
-        if (connected_) add_sampled_light(material, interaction);
-        const BsdfSample<N> sample = sample_bsdf(material, scene_.spectra, wavelengths_, interaction, random_);
-        if (sample.direction.x == 0.0f && sample.direction.y == 0.0f && sample.direction.z == 0.0f) return false;
+        const bool connects = bodies_.current() < 0 && connects_to_lights(material);
+        if (connects) connect_lights(interaction, interaction.face_normal());
+        visit_.renew();
+        return go_on(sample_bsdf(material, scene_.spectra, wavelengths_, interaction, random_), connects, surface, ray);
+    }
+
+    /// The same at the rough surface of a body; lights are connected on the side that is in the open.
+    OPAL_HD bool meet_rough_body(Ray& ray, const Surface& surface, NestedBodies beyond) {
+        SurfaceInteraction<N> interaction;
+        interaction.surface = surface;
+        interaction.direction = ray.direction;
+        lane_indices(bodies_.current(), interaction.index_before);
+        lane_indices(beyond.current(), interaction.index_beyond);
+        const bool open_before = bodies_.current() < 0, open_beyond = beyond.current() < 0;
+        if (open_before) connect_lights(interaction, interaction.face_normal());
+        if (open_beyond) connect_lights(interaction, -interaction.face_normal());
+        const BsdfSample<N> sample =
+            sample_interface(scene_.bodies[surface.body].roughness, wavelengths_, interaction, weights_, random_);
+        if (sample.transmitted) {
+            bodies_ = beyond;
+            visit_.enter(0);
+        } else {
+            visit_.renew();
+        }
+        return go_on(sample, sample.transmitted ? open_beyond : open_before, surface, ray);
+    }
+
+    /// Follows a drawn direction; `connects`: lights were connected on its side.
+    OPAL_HD bool go_on(const BsdfSample<N>& sample, bool connects, const Surface& surface, Ray& ray) {
+        if (dot(sample.direction, sample.direction) == 0.0f) return false;
         for (int i = 0; i < weights_.count; ++i) {
             weights_.throughput.v[i] *= sample.weight.v[i];
             weights_.ratio.v[i] *= sample.ratio.v[i];
         }
         pdf_ = sample.pdf;
-        if (pdf_ <= 0.0f) connected_ = false;
-        visit_.renew();
+        connected_ = connects && pdf_ > 0.0f;
+        drawn_from_ = surface.position;
         ray = leaving(surface, sample.direction);
         return true;
     }
 
-    /// Light that a point receives from a drawn direction of the environment (next-event estimation), weighted against the
-    /// directions that the path itself draws by the power heuristic (Veach 1997).
-    OPAL_HD void add_sampled_light(const MaterialView& material, const SurfaceInteraction<N>& interaction) {
+    /// What the surface that the path has come to sends from there into a direction.
+    OPAL_HD BsdfValue<N> evaluate(const SurfaceInteraction<N>& interaction, Vec3 direction) const {
+        const Surface& surface = interaction.surface;
+        if (surface.body >= 0)
+            return evaluate_interface(scene_.bodies[surface.body].roughness, wavelengths_, interaction, weights_, direction);
+        return evaluate_bsdf(scene_.materials[surface.material], scene_.spectra, wavelengths_, interaction, direction);
+    }
+
+    /// Weight of a direction drawn with density `pdf` that could have been drawn with `other_pdf` as well: the power heuristic
+    /// (Veach 1997).
+    OPAL_HD static float power_heuristic(float pdf, float other_pdf) {
+        const float ratio = other_pdf / pdf;
+        return 1.0f / (1.0f + ratio * ratio);
+    }
+
+    /// Light that a point receives from a drawn direction of one of the lights (next-event estimation), weighted against the
+    /// directions that the path itself draws. `normal`: towards the side of the light.
+    OPAL_HD void connect_lights(const SurfaceInteraction<N>& interaction, Vec3 normal) {
+        if (scene_.light_sampling == LightSampling::scattering) return;
+        const Vec3 position = interaction.surface.position;
+        const float u = scene_.lights.count > 0 ? random_.next() : 0.0f;
         const float u1 = random_.next(), u2 = random_.next();
-        const Vec3 direction = sample_environment(scene_.environment, u1, u2);
-        const Vec3 normal = interaction.face_normal();
-        const float light_pdf = environment_pdf(scene_.environment, direction);
-        if (dot(direction, normal) <= 0.0f || light_pdf <= 0.0f) return;
-        if (intersector_.occluded({offset_origin(interaction.surface.position, normal, direction), direction})) return;
-        const BsdfValue<N> value = evaluate_bsdf(material, scene_.spectra, wavelengths_, interaction, direction);
-        const float weight = square(light_pdf) / (square(light_pdf) + square(value.pdf));
+        const LightSample sample = sample_light(scene_.lights, scene_.environment, position, u, u1, u2);
+        if (!(sample.pdf > 0.0f) || dot(sample.direction, normal) <= 0.0f) return;
+        const Ray shadow{offset_origin(position, normal, sample.direction), sample.direction};
+        const float reach_mm = sample.distance_mm * (1.0f - 1.0e-5f);
+        if (lights_occlude(scene_.lights, shadow, reach_mm, sample.light) || intersector_.occluded(shadow, reach_mm)) return;
+        const BsdfValue<N> value = evaluate(interaction, sample.direction);
+        const float weight = scene_.light_sampling == LightSampling::both ? power_heuristic(sample.pdf, value.pdf) : 1.0f;
         Lanes<N> factor;
-        for (int i = 0; i < weights_.count; ++i) factor.v[i] = weight * value.f_cosine.v[i] / light_pdf;
-        add_light(direction, factor);
+        for (int i = 0; i < weights_.count; ++i) factor.v[i] = weight * value.f_cosine.v[i] / sample.pdf;
+        if (sample.light == environment_light)
+            add_environment(sample.direction, factor);
+        else
+            add_light(sample.direction, sample.light, factor);
     }
 
-    OPAL_HD void add_environment(Vec3 direction) {
-        float weight = 1.0f;
-        if (connected_) weight = square(pdf_) / (square(pdf_) + square(environment_pdf(scene_.environment, direction)));
-        add_light(direction, Lanes<N>::all(weight));
+    /// Weight of light that the path itself has met, against the connections from its last point.
+    OPAL_HD Lanes<N> weight_of_met(Vec3 direction, int light) const {
+        if (!connected_ || scene_.light_sampling == LightSampling::scattering) return Lanes<N>::all(1.0f);
+        if (scene_.light_sampling == LightSampling::connections) return Lanes<N>::all(0.0f);
+        return Lanes<N>::all(power_heuristic(pdf_, light_pdf(scene_.lights, scene_.environment, drawn_from_, direction, light)));
     }
 
-    OPAL_HD void add_light(Vec3 direction, const Lanes<N>& factor) {
+    OPAL_HD void add_met_light(Vec3 direction, int light) { add_light(direction, light, weight_of_met(direction, light)); }
+
+    /// The environment and the suns in front of it.
+    OPAL_HD void add_distant_lights(Vec3 direction) {
+        add_environment(direction, weight_of_met(direction, environment_light));
+        for (int i = 0; i < scene_.lights.count; ++i) {
+            const LightGeometry& geometry = scene_.lights.lights[i].geometry;
+            if (geometry.shape == LightShape::sun && in_sun(geometry, direction)) add_met_light(direction, i);
+        }
+    }
+
+    OPAL_HD void add_environment(Vec3 direction, const Lanes<N>& factor) {
         const Lanes<N> contribution = weights_.contribution();
         const EnvironmentFootprint footprint = environment_footprint(scene_.environment, direction);
         for (int i = 0; i < weights_.count; ++i)
             result_.radiance.v[i] += factor.v[i] * contribution.v[i] * spectra_.white[i] *
                                      environment_color(scene_.spectra, footprint, wavelengths_.wavelength_nm[i]);
+    }
+
+    OPAL_HD void add_light(Vec3 direction, int light, const Lanes<N>& factor) {
+        const Lanes<N> contribution = weights_.contribution();
+        for (int i = 0; i < weights_.count; ++i)
+            result_.radiance.v[i] += factor.v[i] * contribution.v[i] *
+                                     light_radiance(scene_.lights.lights[light], direction, wavelengths_.wavelength_nm[i]);
     }
 
     /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios
@@ -276,21 +329,20 @@ class PathTracer {
     NestedBodies bodies_;     ///< where the path is
     bool connected_ = false;  ///< lights were sampled at the last point
     float pdf_ = 0.0f;        ///< with which the direction from there was drawn
+    Vec3 drawn_from_;         ///< that point
 };
 
 /// The camera ray and the wavelengths of one sample, and its path: what a kernel does for one work index (pixel, sample).
 template <int N, class Intersector>
 OPAL_HD PathResult<N> trace_sample(const SceneView& scene, const Intersector& intersector, uint32_t pixel, uint32_t sample,
                                    PathWavelengths<N>& wavelengths, PathCounters& counters) {
-    PathRandom random(scene.seed, pixel, sample);
-    const PixelSequence sequence(scene.seed, pixel, sample);
-    const float u = scene.stratified ? sequence.wavelength() : random.next();
-    const float filter_u = scene.stratified ? sequence.position_x() : random.next();
-    const float filter_v = scene.stratified ? sequence.position_y() : random.next();
-    const float x = 0.5f + sample_pixel_filter(scene.filter, filter_u);
-    const float y = 0.5f + sample_pixel_filter(scene.filter, filter_v);
-    wavelengths = sample_wavelengths<N>(scene.spectra, u, scene.wavelengths);
-    const float lens_u = random.next(), lens_v = random.next();
+    PathRandom random(scene.seed, pixel, sample, scene.sampler);
+    const PixelNumbers numbers = random.pixel_numbers();
+    const float x = 0.5f + sample_pixel_filter(scene.filter, numbers.x);
+    const float y = 0.5f + sample_pixel_filter(scene.filter, numbers.y);
+    wavelengths = sample_wavelengths<N>(scene.spectra, numbers.wavelength, scene.wavelengths);
+    const bool lens = scene.camera.aperture_radius_mm > 0.0f;
+    const float lens_u = lens ? random.next() : 0.0f, lens_v = lens ? random.next() : 0.0f;
     const Ray ray = camera_ray(scene.camera, (float(pixel % uint32_t(scene.width)) + x) / float(scene.width),
                                (float(pixel / uint32_t(scene.width)) + y) / float(scene.height), lens_u, lens_v);
     PathTracer<N, Intersector> tracer(scene, intersector, wavelengths, random, counters);

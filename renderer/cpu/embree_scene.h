@@ -21,12 +21,14 @@ class EmbreeScene {
 
     /// Nearest surface along the ray.
     bool closest(const Ray& ray, RayHit& hit) const;
-    /// Whether anything lies along the ray.
-    bool occluded(const Ray& ray) const;
+    /// Whether anything lies along the ray within `max_mm`.
+    bool occluded(const Ray& ray, float max_mm) const;
 
   private:
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
+    const std::vector<MeshData>& meshes_;
+    bool exact_ = false;  ///< some surfaces are patches
 };
 
 }  // namespace opal

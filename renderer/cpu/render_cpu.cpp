@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "formats/command.h"
+#include "renderer/cpu/light_guides.h"
 #include "renderer/host/film_noise.h"
 
 namespace opal {
@@ -26,9 +27,8 @@ void add_counters(PathCounters& sum, const PathCounters& part) {
 
 /// Adds the samples [block.end_sample, end) to a block's pixels.
 template <int N>
-void trace_block(const HostScene& scene, const EmbreeScene& intersector, const PixelWindow& pixels, std::uint32_t end, Film& film,
+void trace_block(const SceneView& view, const EmbreeScene& intersector, const PixelWindow& pixels, std::uint32_t end, Film& film,
                  FilmBlock& block) {
-    const SceneView& view = scene.view();
     const PixelWindow& window = film.window();
     for (int y = pixels.y0; y < pixels.y1; ++y)
         for (int x = pixels.x0; x < pixels.x1; ++x)
@@ -74,7 +74,7 @@ class RenderRun {
   public:
     RenderRun(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
               const std::function<void(const RenderProgress&)>& progress)
-        : scene_(scene),
+        : guides_(scene, intersector),
           intersector_(intersector),
           limits_(limits),
           film_(film),
@@ -167,7 +167,7 @@ class RenderRun {
         const std::uint32_t samples_before = block.end_sample;
         while (!block.settled && block.end_sample < target) {
             const std::uint32_t first = film_.first_sample(), look = first + next_noise_look(block.end_sample - first);
-            trace_(scene_, intersector_, film_.block_window(index), std::min(target, look), film_, block);
+            trace_(guides_.scene(), intersector_, film_.block_window(index), std::min(target, look), film_, block);
             if (block.end_sample == look && film_.noise_floor() >= 0.0) look_at_noise(film_, index, limits_.noise);
         }
         const PixelWindow window = film_.block_window(index);
@@ -175,7 +175,7 @@ class RenderRun {
         work_done_ += work_before - work_left(block);
     }
 
-    const HostScene& scene_;
+    const LightGuides guides_;
     const EmbreeScene& intersector_;
     const RenderLimits limits_;
     Film& film_;

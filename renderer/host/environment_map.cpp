@@ -101,6 +101,19 @@ void build_tables(const Picture& picture, EnvironmentMap& map) {
     }
 }
 
+double mean_luminance(const Picture& picture) {
+    double sum = 0.0, solid_angle = 0.0;
+    for (int y = 0; y < picture.height; ++y) {
+        const double sine = std::sin(units::pi * (y + 0.5) / picture.height);
+        for (int x = 0; x < picture.width; ++x) {
+            const Rgb& texel = picture.texels[std::size_t(y) * picture.width + x];
+            sum += sine * (0.2126 * double(texel.r) + 0.7152 * double(texel.g) + 0.0722 * double(texel.b));
+            solid_angle += sine;
+        }
+    }
+    return sum / solid_angle;
+}
+
 }  // namespace
 
 EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling) {
@@ -110,6 +123,7 @@ EnvironmentMap make_environment(const EnvironmentDescription& description, Upsam
     map.height = picture.height;
     map.rotation_rad = units::rad_from_deg(description.rotate_deg);
     build_tables(picture, map);
+    map.mean_luminance = float(description.radiance * mean_luminance(picture));
     map.texels.reserve(picture.texels.size());
     const UpsamplingMethod method = upsampling_method(upsampling);
     for (const Rgb& texel : picture.texels) {

@@ -12,6 +12,7 @@ namespace opal {
 struct EnvironmentMap {
     int width = 0, height = 0;
     double rotation_rad = 0.0;
+    float mean_luminance = 0.0f;  ///< over all directions
     std::vector<UpsampledColor> texels;
     std::vector<float> row_cdf, column_cdf;
 

@@ -10,7 +10,8 @@
 #include "formats/error.h"
 #include "formats/units.h"
 #include "renderer/host/enclosure.h"
-#include "renderer/host/upsampler.h"
+#include "renderer/host/mesh_file.h"
+#include "renderer/host/mesh_topology.h"
 
 namespace opal {
 namespace {
@@ -21,6 +22,45 @@ Vec3 to_vec3(const std::array<double, 3>& v) {
 
 SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
+}
+
+/// Wavelengths are drawn for all the light there is where the camera looks.
+SpectrumTablesData make_spectra(const SceneDescription& description, const EnvironmentMap& environment, const LightData& lights) {
+    SpectrumTableOptions options;
+    options.illuminant = illuminant_of(description.environment);
+    options.upsampling = description.color.upsampling;
+    options.alias = description.render.sampler == SamplerKind::independent;
+    std::vector<double> light = lights.spectrum_at(to_vec3(description.camera.target_mm));
+    const std::vector<double> white = colorimetric_table(options.illuminant);
+    const double environment_share = double(environment_importance({nullptr, 0, environment.mean_luminance}));
+    double total = 0.0;
+    for (std::size_t i = 0; i < light.size(); ++i) total += light[i] += environment_share * white[i];
+    if (total > 0.0) options.drawn_light = std::move(light);
+    return make_spectrum_tables(options);
+}
+
+PathSampler path_sampler(SamplerKind kind) {
+    switch (kind) {
+        case SamplerKind::sobol:
+            return PathSampler::sobol;
+        case SamplerKind::stratified:
+            return PathSampler::stratified;
+        case SamplerKind::independent:
+            break;
+    }
+    return PathSampler::independent;
+}
+
+LightSampling light_sampling(LightSamplingKind kind) {
+    switch (kind) {
+        case LightSamplingKind::connections:
+            return LightSampling::connections;
+        case LightSamplingKind::scattering:
+            return LightSampling::scattering;
+        case LightSamplingKind::both:
+            break;
+    }
+    return LightSampling::both;
 }
 
 /// The four kinds stand in the same order.
@@ -48,20 +88,20 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
-    : spectra_(make_spectrum_tables({illuminant_of(description.environment), description.color.upsampling,
-                                     description.render.sampler == SamplerKind::independent})),
-      environment_(make_environment(description.environment, description.color.upsampling)) {
+    : environment_(make_environment(description.environment, description.color.upsampling)),
+      lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
+      spectra_(make_spectra(description, environment_, lights_)),
+      guided_(description.render.guided) {
     tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
-        materials_.push_back({MaterialModel::diffuse,
-                              upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),
-                                                                         float(material.albedo[2])})});
+        material_data_.emplace_back(material, spectra_.upsampling, description.opal.dispersion);
+    for (const MaterialData& material : material_data_) materials_.push_back(material.view());
     OpalCache own;
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
             add_opal(object, (opals ? *opals : own).find(object, description.opal, notices));
         else
-            add_mesh(object, description.materials);
+            add_mesh(object, description, notices);
     }
     const RenderDescription& render = description.render;
     view_.camera = make_camera(description.camera, render.width, render.height);
@@ -70,6 +110,8 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.bodies = bodies_.data();
     view_.spectra = spectra_.view();
     view_.environment = environment_.view();
+    view_.lights = lights_.view();
+    require_lights_outside(description.lights);
     view_.meshes = mesh_views_.data();
     view_.materials = materials_.data();
     view_.width = render.width;
@@ -77,16 +119,20 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.max_bounces = render.max_bounces;
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
-    view_.stratified = render.sampler == SamplerKind::stratified;
+    view_.sampler = path_sampler(render.sampler);
+    view_.light_sampling = light_sampling(render.light_sampling);
     view_.filter = pixel_filter(render);
 }
 
 void HostScene::add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal) {
     const RigidTransform transform = object_transform(object);
-    meshes_.push_back(opal->surface());
-    transform_mesh(meshes_.back(), transform);
-    add_body(opal->placed(transform), object.priority);
     opals_.push_back(std::move(opal));
+    OpalView view = opals_.back()->placed(transform);
+    view.object = int(opals_.size() + glasses_.size());
+    for (MeshData& surface : opals_.back()->surfaces(transform)) {
+        meshes_.push_back(std::move(surface));
+        add_body(view, object.priority);
+    }
 }
 
 /// The last mesh bounds it.
@@ -122,6 +168,15 @@ void HostScene::order_bodies() {
     }
 }
 
+void HostScene::require_lights_outside(const std::vector<LightDescription>& lights) const {
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        for (const MeshData& mesh : meshes_)
+            if (lights[i].kind != LightKind::sun && mesh.body >= 0 && encloses(mesh, to_vec3(lights[i].position_mm)))
+                throw InputError(
+                    fmt::format("light.{}: stands at [{}, {}, {}] inside a transparent object; lights must be outside", i,
+                                lights[i].position_mm[0], lights[i].position_mm[1], lights[i].position_mm[2]));
+}
+
 const std::string& HostScene::recipe_toml() const {
     static const std::string none;
     return opals_.empty() ? none : opals_.front()->recipe_toml();
@@ -139,7 +194,7 @@ int HostScene::reciprocal_points() const {
     return most;
 }
 
-void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {
+void HostScene::add_mesh(const ObjectDescription& object, const SceneDescription& scene, std::vector<std::string>& notices) {
     MeshData mesh;
     switch (object.kind) {
         case ObjectKind::plane:
@@ -152,14 +207,31 @@ void HostScene::add_mesh(const ObjectDescription& object, const std::vector<Mate
             mesh = make_cylinder(object.radius_mm, object.height_mm, object.bevel_mm);
             break;
         default:
-            mesh = load_mesh(object.file);
+            mesh = load_mesh(object.file, object.smooth_normals_deg, notices);
             break;
     }
-    transform_mesh(mesh, object_transform(object));
-    const auto found = std::find_if(materials.begin(), materials.end(),
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
                                     [&](const MaterialDescription& material) { return material.name == object.material; });
-    mesh.material = static_cast<int>(found - materials.begin());
+    if (found->kind == MaterialKind::dielectric) return add_glass(object, *found, scene.opal, std::move(mesh));
+    transform_mesh(mesh, object_transform(object));
+    mesh.material = static_cast<int>(found - scene.materials.begin());
     meshes_.push_back(std::move(mesh));
+}
+
+void HostScene::add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
+                          MeshData mesh) {
+    if (const std::size_t open = count_open_edges(mesh); open > 0)
+        throw InputError(fmt::format("{}: the surface has {} open edges; a dielectric ('{}') needs a closed one",
+                                     object.file.string(), open, material.name));
+    if (signed_volume6(mesh) < 0.0) turn_inside_out(mesh);
+    openvdb::BBoxd bounds_mm;
+    for (const Vec3& p : mesh.positions) bounds_mm.expand(openvdb::Vec3d(double(p.x), double(p.y), double(p.z)));
+    glasses_.push_back(std::make_unique<GlassBody>(object, material, settings, bounds_mm));
+    transform_mesh(mesh, object_transform(object));
+    meshes_.push_back(std::move(mesh));
+    OpalView view = glasses_.back()->view();
+    view.object = int(opals_.size() + glasses_.size());
+    add_body(view, object.priority);
 }
 
 }  // namespace opal

@@ -9,6 +9,9 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
+#include "renderer/host/glass_body.h"
+#include "renderer/host/material_data.h"
+#include "renderer/host/light_data.h"
 #include "renderer/host/mesh_data.h"
 #include "renderer/host/opal_cache.h"
 #include "renderer/host/spectrum_tables.h"
@@ -27,6 +30,9 @@ class HostScene {
     const SceneView& view() const { return view_; }
     const std::vector<MeshData>& meshes() const { return meshes_; }
     const EnvironmentMap& environment() const { return environment_; }
+    std::size_t num_bodies() const { return bodies_.size(); }
+    /// Whether scattered light is to be drawn towards where light comes from.
+    bool guided() const { return guided_; }
 
     /// What preparing the tables of light, colours and spectra took.
     double tables_seconds() const { return tables_s_; }
@@ -43,17 +49,24 @@ class HostScene {
     void add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal);
     void add_body(const OpalView& view, int priority);
     void order_bodies();
-    void add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials);
+    void add_mesh(const ObjectDescription& object, const SceneDescription& scene, std::vector<std::string>& notices);
+    void add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
+                   MeshData mesh);
+    void require_lights_outside(const std::vector<LightDescription>& lights) const;
 
     const Stopwatch watch_;
-    SpectrumTablesData spectra_;
     EnvironmentMap environment_;
+    LightData lights_;
+    SpectrumTablesData spectra_;
+    std::vector<MaterialData> material_data_;
     std::vector<MaterialView> materials_;
     std::vector<MeshData> meshes_;
     std::vector<MeshView> mesh_views_;
     std::vector<std::shared_ptr<const OpalBody>> opals_;
+    std::vector<std::unique_ptr<GlassBody>> glasses_;
     std::vector<OpalView> bodies_;
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
+    bool guided_;
     SceneView view_;
     double tables_s_ = 0.0;
 };

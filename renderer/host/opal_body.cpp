@@ -11,6 +11,7 @@
 #include "formats/units.h"
 #include "renderer/core/mosaic.h"
 #include "renderer/host/opal_surface.h"
+#include "renderer/host/patch_surface.h"
 #include "renderer/host/stacking.h"
 
 namespace opal {
@@ -84,7 +85,12 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.diffraction = transport_model(settings.diffraction);
     opal.ewald_tolerance = float(settings.ewald_tolerance);
     opal.max_odds = float(settings.max_odds);
-    surface_ = surface_from_level_set(*asset.shape, file);
+    if (object.exact && asset.bezier_patches.empty())
+        throw InputError(file + ": has no Bezier patches, which exact = true asks for; shapes of kind \"bezier\" have them");
+    if (object.exact)
+        patches_ = asset.bezier_patches;
+    else
+        surface_ = surface_from_level_set(*asset.shape, file);
 
     grains_ = std::make_unique<GrainSource>(asset, settings.grains, file, notices);
     opal.grains = grains_->view();
@@ -102,6 +108,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.relative_index = optics_.relative_index.data();
     opal.surface_index = optics_.surface_index.data();
     opal.surface_disperses = optics_.surface_disperses;
+    opal.roughness = float(object.roughness);
     opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
     // Places beyond the last repeat it without its strength.
     for (int k = 0; k < max_tested_pairs && opal.num_pairs > 0; ++k)
@@ -128,6 +135,13 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
     if (sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
     opal.medium.mie_phase = mie_phase_.view();
+}
+
+std::vector<MeshData> OpalBody::surfaces(const RigidTransform& world_from_object) const {
+    if (!patches_.empty()) return surfaces_from_patches(patches_, world_from_object);
+    std::vector<MeshData> meshes = {surface_};
+    transform_mesh(meshes.back(), world_from_object);
+    return meshes;
 }
 
 }  // namespace opal

@@ -36,8 +36,8 @@ class OpalBody {
         view.world_from_object = world_from_object;
         return view;
     }
-    /// In object space.
-    const MeshData& surface() const { return surface_; }
+    /// The surface in world space: one closed mesh, or one for each part of an exact surface.
+    std::vector<MeshData> surfaces(const RigidTransform& world_from_object) const;
 
     /// Reciprocal-lattice points inside the limiting sphere, the origin counted.
     int reciprocal_points() const { return reciprocal_points_; }
@@ -47,7 +47,8 @@ class OpalBody {
     const std::string& recipe_toml() const { return recipe_toml_; }
 
   private:
-    MeshData surface_;
+    MeshData surface_;                  ///< object space; not used where there are patches
+    std::vector<BezierPatch> patches_;  ///< of an exact surface
     std::unique_ptr<GrainSource> grains_;
     std::vector<Quaternion> orientations_;
     OpticalTables optics_;

@@ -26,13 +26,13 @@ SmitsRow smits_row(std::size_t bin) {
 
 /// The density of wavelengths and its integral. The density is what the rounded integral draws, so that inversion and density
 /// agree to the last digit.
-void add_wavelength_density(SpectrumTablesData& tables) {
+void add_wavelength_density(const std::vector<double>& light, SpectrumTablesData& tables) {
     std::vector<double> density;
     double total = 0.0;
     for (std::size_t i = 0; i + 1 < spectrum_samples; ++i) {
         const auto at = [&](std::size_t k) {
             const Vec3 observer = tables.observer[k];
-            return double(observer.x + observer.y + observer.z) * double(tables.white[k]);
+            return double(observer.x + observer.y + observer.z) * light[k];
         };
         density.push_back(0.5 * (at(i) + at(i + 1)));
         total += density.back();
@@ -61,7 +61,7 @@ SpectrumTablesData make_spectrum_tables(const SpectrumTableOptions& options) {
     }
     for (std::size_t bin = 0; bin < smits_bins; ++bin) tables.smits.push_back(smits_row(bin));
     tables.upsampling = upsampling_method(options.upsampling);
-    add_wavelength_density(tables);
+    add_wavelength_density(options.drawn_light.empty() ? light : options.drawn_light, tables);
     if (options.alias) tables.alias = make_alias_table(tables.pdf);
     return tables;
 }

@@ -28,12 +28,13 @@ struct SpectrumTablesData {
 struct SpectrumTableOptions {
     SampledSpectrum illuminant = illuminant_spectrum(IlluminantKind::d65);  ///< scaled so that Y = 1
     Upsampling upsampling = Upsampling::jakob_hanika;
-    bool alias = false;  ///< wavelengths by an alias table: for independent random numbers
+    std::vector<double> drawn_light;  ///< 1 nm: the light that wavelengths are drawn for; empty: the illuminant
+    bool alias = false;               ///< wavelengths by an alias table: for independent random numbers
 };
 
 /// CIE 1931 observer over its integral of y, the illuminant, the spectra that colours are made of, and a density of wavelengths
-/// that follows what a display shows of that light: nine tenths proportional to illuminant times (x + y + z), one tenth uniform
-/// so that every wavelength is drawn.
+/// that follows what a display shows of the light: nine tenths proportional to light times (x + y + z), one tenth uniform so
+/// that every wavelength is drawn.
 SpectrumTablesData make_spectrum_tables(const SpectrumTableOptions& options = {});
 
 }  // namespace opal

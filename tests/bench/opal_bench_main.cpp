@@ -7,12 +7,14 @@
 #include <string>
 
 #include "color_bench.h"
+#include "convergence_bench.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/opal_asset.h"
 #include "grains_bench.h"
 #include "media_bench.h"
+#include "media_checks_bench.h"
 #include "modeler_bench.h"
 
 namespace {
@@ -20,6 +22,8 @@ namespace {
 struct BenchArguments {
     std::string folder;
     bool quick = false;
+    std::string scenes = "examples/media_checks";
+    int samples = 16;
 };
 
 int run_modeler(const BenchArguments& arguments) {
@@ -85,6 +89,17 @@ int run_bench(int argc, char** argv) {
     CLI::App* const grains = app.add_subcommand("grains", "finding the grains along rays: speed, memory, errors (some minutes)");
     grains->add_option("-o,--output", arguments.folder, "folder for grains.csv")->required()->type_name("DIR");
     grains->add_flag("--quick", arguments.quick, "1,000 sites alone");
+    CLI::App* const checks = app.add_subcommand(
+        "media-checks", "examples/media_checks: speed and variance, to be run beside other renderers (some minutes)");
+    checks->add_option("-o,--output", arguments.folder, "folder for media_checks.csv and disc.exr")->required()->type_name("DIR");
+    checks->add_option("--scenes", arguments.scenes, "folder of the scenes")->type_name("DIR")->capture_default_str();
+    checks->add_option("--spp", arguments.samples, "samples per pixel of each of two renders")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
+    CLI::App* const convergence =
+        app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
+    convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -97,7 +112,16 @@ int run_bench(int argc, char** argv) {
         return 0;
     }
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
+    if (convergence->parsed()) {
+        opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
     if (media->parsed()) return run_media(arguments.folder);
+    if (checks->parsed()) {
+        opal::initialize_openvdb();
+        opal::bench_media_checks(arguments.scenes, arguments.folder, arguments.samples);
+        return 0;
+    }
     return run_modeler(arguments);
 }
 

@@ -43,6 +43,67 @@ TEST(Scene, ResolvedTextReadsBackToTheSameText) {
     EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
 }
 
+const std::string glass = "[[material]]\nname = \"m\"\nkind = \"dielectric\"\n";
+
+TEST(Scene, MaterialsOfEveryKindReadBack) {
+    const SceneDescription scene =
+        parse(glass +
+              "n = \"silica\"\nroughness = 0.2\nmedium = { absorber = \"pink-dye\", sigma_a_per_mm = 0.1, sigma_s_per_mm = 0.3, "
+              "asymmetry = 0.5, density_file = \"fog.vdb\", density_grid = \"d\", density_scale = 2.0 }\n"
+              "[[material]]\nname = \"ring\"\nkind = \"conductor\"\nmetal = \"rhodium\"\nroughness = 0.1\n"
+              "[[material]]\nname = \"stand\"\nkind = \"plastic\"\nalbedo = [0.1, 0.2, 0.3]\nn = 1.6\n"
+              "[[object]]\nkind = \"sphere\"\nmaterial = \"m\"\npriority = 3\n"
+              "[[object]]\nkind = \"mesh\"\nfile = \"ring.obj\"\nmaterial = \"ring\"\nsmooth_normals_deg = 40\n"
+              "[[object]]\nkind = \"opal\"\nfile = \"gem.vdb\"\nroughness = 0.05\nexact = true\n");
+    EXPECT_EQ(scene.materials[0].kind, MaterialKind::dielectric);
+    EXPECT_EQ(scene.materials[0].n.name(), "silica");
+    EXPECT_EQ(scene.materials[0].medium.density_file, std::filesystem::path("folder/fog.vdb"));
+    EXPECT_EQ(scene.materials[1].metal, "rhodium");
+    EXPECT_EQ(scene.materials[2].n.at(500.0), 1.6);
+    EXPECT_EQ(scene.objects[0].priority, 3);
+    EXPECT_EQ(scene.objects[1].smooth_normals_deg, 40.0);
+    EXPECT_TRUE(scene.objects[2].exact);
+    EXPECT_EQ(scene.objects[2].roughness, 0.05);
+    const std::string text = scene_to_toml(scene);
+    EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
+}
+
+TEST(Scene, ErrorsOfMaterials) {
+    EXPECT_INPUT_ERROR(parse(glass + "roughness = 0.0001\n" + minimal),
+                       "0.0001 is out of range; allowed: 0 (smooth) or 0.001 to 1");
+    EXPECT_INPUT_ERROR(parse(glass + "albedo = 0.5\n" + minimal), "unknown key 'material.0.albedo'");
+    EXPECT_INPUT_ERROR(parse(glass + "n = \"silika\"\n" + minimal), "did you mean 'silica'?");
+    EXPECT_INPUT_ERROR(parse(glass + "medium = { absorber = \"pink\" }\n" + minimal),
+                       "folder/s.toml:4:23: material.0.medium.absorber");
+    EXPECT_INPUT_ERROR(parse("[[material]]\nname = \"r\"\nkind = \"conductor\"\nmetal = \"rodium\"\n" + minimal),
+                       "did you mean 'rhodium'?");
+    EXPECT_INPUT_ERROR(parse(glass + "[[object]]\nkind = \"plane\"\nmaterial = \"m\"\n"), "a plane encloses nothing");
+    EXPECT_INPUT_ERROR(parse("[[material]]\nname = \"d\"\n[[object]]\nkind = \"sphere\"\nmaterial = \"d\"\npriority = 1\n"),
+                       "unknown key 'object.0.priority'");
+}
+
+TEST(Scene, LightsReadBack) {
+    const std::string lights =
+        "[[light]]\nkind = \"area\"\nposition_mm = [0, 0, 50]\nwidth_mm = 3\n[[light]]\nkind = \"area\"\nradius_mm = 4\n"
+        "[[light]]\nkind = \"sphere\"\nilluminant = \"blackbody\"\ntemperature_k = 2700\n[[light]]\nkind = \"spot\"\n"
+        "cone_deg = 20\nvisible = false\n[[light]]\nkind = \"sun\"\ncolor = [1, 0.5, 0.2]\nelevation_deg = 10\n";
+    const SceneDescription scene = parse(minimal + lights);
+    ASSERT_EQ(scene.lights.size(), 5u);
+    EXPECT_FALSE(scene.lights[0].disk);
+    EXPECT_TRUE(scene.lights[1].disk);
+    EXPECT_EQ(scene.lights[4].angular_diameter_deg, 0.53);
+    const std::string text = scene_to_toml(scene);
+    EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
+    const auto light = [&](const std::string& keys) { return parse(minimal + "[[light]]\n" + keys); };
+    EXPECT_INPUT_ERROR(light("radius_mm = 1\n"), "light.0.kind: is needed; allowed: area, sphere, spot, sun");
+    EXPECT_INPUT_ERROR(light("kind = \"sphere\"\nwidth_mm = 1\n"), "unknown key 'light.0.width_mm'");
+    EXPECT_INPUT_ERROR(light("kind = \"area\"\nradius_mm = 1\nwidth_mm = 1\n"), "is for a rectangle");
+    EXPECT_INPUT_ERROR(light("kind = \"area\"\nposition_mm = [9, 0, 0]\nup = [-2, 0, 0]\n"), "must not point along");
+    EXPECT_INPUT_ERROR(light("kind = \"spot\"\nposition_mm = [0, 0, 0]\n"), "is where the light stands");
+    EXPECT_INPUT_ERROR(light("kind = \"spot\"\nradius_mm = 0\n"), "light.0.radius_mm: 0 is out of range");
+    EXPECT_INPUT_ERROR(light("kind = \"sun\"\nradiance = 1\n"), "unknown key 'light.0.radiance'");
+}
+
 TEST(Scene, FilterRadiusFollowsTheFilter) {
     EXPECT_EQ(parse(minimal).render.filter_radius_px, 1.0);
     EXPECT_EQ(parse(minimal + "[render]\nfilter = \"box\"\n").render.filter_radius_px, 0.5);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/light_guide.h"
+#include "renderer/core/medium.h"
+
+namespace opal {
+
+/// Share of the directions that the guide draws; the phase functions draw the rest, so that no weight exceeds 1 / (1 - share).
+inline constexpr float guide_share = 0.5f;
+
+/// Per lane, the density of scattering into a direction, given that it scatters: Rayleigh's and the other phase function by their
+/// shares.
+template <int N>
+OPAL_HD inline float phase_mixture(const MediumView& view, const LaneMedium<N>& local, int lane, float cosine,
+                                   float wavelength_nm) {
+    const float sigma_s = local.sigma_s(lane);
+    if (!(sigma_s > 0.0f)) return 0.0f;
+    float sum = 0.0f;
+    if (local.sigma_rayleigh.v[lane] > 0.0f) sum += local.sigma_rayleigh.v[lane] * rayleigh_phase(cosine);
+    if (local.sigma_mie.v[lane] > 0.0f) sum += local.sigma_mie.v[lane] * phase_density(view.mie_phase, cosine, wavelength_nm);
+    return sum / sigma_s;
+}
+
+/// As scatter_direction, with half of the directions drawn from the guide. Each lane's weight is its phase function over its own
+/// density of drawing, the mixture of both ways, and its ratio takes that density over the hero's.
+template <int N>
+OPAL_HD inline Vec3 guided_scatter_direction(const MediumView& view, const LightGuideView& guide, Vec3 position_mm,
+                                             const PathWavelengths<N>& wavelengths, const LaneMedium<N>& local, Vec3 direction,
+                                             LaneWeights<N>& weights, PathRandom& random) {
+    const float choice = random.next(), u1 = random.next(), u2 = random.next();
+    Vec3 turned;
+    if (choice < guide_share) {
+        turned = sample_guide(guide, position_mm, u1, u2);
+    } else {
+        const bool rayleigh = (choice - guide_share) / (1.0f - guide_share) * local.sigma_s(0) < local.sigma_rayleigh.v[0];
+        const PhaseFunctionView& phase = view.mie_phase;
+        const float cosine =
+            rayleigh ? sample_rayleigh_cosine(u1)
+                     : sample_phase_cosine(phase, wavelengths.wavelength_nm[0], u1, phase_varies(phase) ? random.next() : 0.0f);
+        turned = deflect(direction, cosine, u2);
+    }
+    const float cosine = max_of(-1.0f, min_of(1.0f, dot(direction, turned)));
+    const float guided = guide_share * guide_pdf(guide, position_mm, turned);
+    float hero_density = 1.0f;
+    for (int i = 0; i < weights.count; ++i) {
+        const float phase = phase_mixture(view, local, i, cosine, wavelengths.wavelength_nm[i]);
+        const float density = (1.0f - guide_share) * phase + guided;
+        weights.throughput.v[i] *= phase / density;
+        if (i == 0)
+            hero_density = local.sigma_s(0) * density;
+        else
+            weights.ratio.v[i] *= local.sigma_s(i) * density / hero_density;
+    }
+    return turned;
+}
+
+}  // namespace opal

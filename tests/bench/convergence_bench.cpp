@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "convergence_bench.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "formats/atomic_file.h"
+#include "formats/command.h"
+#include "formats/error.h"
+#include "formats/scene.h"
+#include "renderer/core/path_tracer.h"
+#include "renderer/cpu/light_guides.h"
+
+namespace opal {
+namespace {
+
+constexpr int num_seeds = 4;
+
+struct Setting {
+    std::string name, sampler;
+    int companions;
+    bool guided;
+};
+
+const std::vector<Setting> settings = {
+    {"one wavelength", "independent", 0, false},          {"3 companions", "independent", 3, false},
+    {"3 companions, stratified", "stratified", 3, false}, {"3 companions, sobol", "sobol", 3, false},
+    {"3 companions, sobol, guided", "sobol", 3, true},    {"7 companions, sobol, guided", "sobol", 7, true},
+};
+
+/// Luminance and two opponent colours, X and Z against Y over the white's.
+using Opponent = std::array<double, 3>;
+
+template <int N>
+Opponent trace_opponent(const SceneView& view, const EmbreeScene& intersector, std::uint32_t pixel, std::uint32_t sample) {
+    PathWavelengths<N> wavelengths;
+    PathCounters counters;
+    const PathResult<N> result = trace_sample(view, intersector, pixel, sample, wavelengths, counters);
+    Xyz sum{0.0, 0.0, 0.0};
+    for (int i = 0; i < wavelengths.count; ++i) {
+        const Vec3 observer = table_at(view.spectra.observer, wavelengths.wavelength_nm[i]);
+        const double radiance = double(result.radiance.v[i]) / (double(wavelengths.pdf_per_nm[i]) * wavelengths.count);
+        sum = {sum.x + radiance * double(observer.x), sum.y + radiance * double(observer.y),
+               sum.z + radiance * double(observer.z)};
+    }
+    return {sum.y, sum.x / srgb_white.x - sum.y, sum.z / srgb_white.z - sum.y};
+}
+
+using Tracer = decltype(&trace_opponent<1>);
+
+Tracer tracer_for(int companions) {
+    if (companions == 0) return trace_opponent<1>;
+    return companions <= 3 ? trace_opponent<4> : trace_opponent<8>;
+}
+
+/// Sums over the seeds of one pixel's mean and its square.
+struct PixelSums {
+    Opponent sum = {}, square = {};
+};
+
+/// Errors after some number of samples.
+struct ErrorRow {
+    int samples = 0;
+    double seconds = 0.0;
+    double luminance = 0.0, luminance_se = 0.0, chroma = 0.0, chroma_se = 0.0;
+};
+
+/// Mean square errors over mean square luminance. Estimates have no bias, so that their variance between seeds is their mean
+/// square error; the standard errors are those of sums over 16 groups of pixels.
+ErrorRow error_row(const std::vector<PixelSums>& pixels) {
+    constexpr std::size_t groups = 16;
+    std::array<std::array<double, 3>, groups> group = {};  // luminance, chroma, mean square luminance
+    for (std::size_t p = 0; p < pixels.size(); ++p) {
+        std::array<double, 3> variance;
+        for (std::size_t k = 0; k < 3; ++k)
+            variance[k] = (pixels[p].square[k] - pixels[p].sum[k] * pixels[p].sum[k] / num_seeds) / (num_seeds - 1);
+        std::array<double, 3>& sums = group[p * groups / pixels.size()];
+        sums[0] += variance[0];
+        sums[1] += variance[1] + variance[2];
+        const double mean = pixels[p].sum[0] / num_seeds;
+        sums[2] += mean * mean - variance[0] / num_seeds;
+    }
+    ErrorRow row;
+    std::array<double, 3> total = {};
+    for (const auto& sums : group)
+        for (std::size_t k = 0; k < 3; ++k) total[k] += sums[k];
+    row.luminance = total[0] / total[2];
+    row.chroma = total[1] / total[2];
+    const auto standard_error = [&](std::size_t k) {
+        double squares = 0.0;
+        for (const auto& sums : group) squares += std::pow(sums[k] - total[k] / groups, 2.0);
+        return std::sqrt(squares * groups / (groups - 1)) / total[2];
+    };
+    row.luminance_se = standard_error(0);
+    row.chroma_se = standard_error(1);
+    return row;
+}
+
+/// The pixels whose centre shows a transparent body.
+std::vector<std::uint32_t> gem_pixels(const SceneView& view, const EmbreeScene& intersector) {
+    std::vector<std::uint32_t> pixels;
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            RayHit hit;
+            const Ray ray = camera_ray(view.camera, (float(x) + 0.5f) / float(view.width), (float(y) + 0.5f) / float(view.height),
+                                       0.0f, 0.0f);
+            if (intersector.closest(ray, hit) && view.meshes[hit.mesh].body >= 0)
+                pixels.push_back(std::uint32_t(y * view.width + x));
+        }
+    return pixels;
+}
+
+std::vector<ErrorRow> measure(const std::filesystem::path& scene_file, const std::filesystem::path& opal, const Setting& setting,
+                              int width, int samples) {
+    const SceneDescription description = read_scene(
+        scene_file, {"object.0.file='" + opal.string() + "'", fmt::format("render.width={}", width),
+                     fmt::format("render.height={}", width * 3 / 4), "render.sampler=" + setting.sampler,
+                     fmt::format("opal.companions={}", setting.companions), fmt::format("render.guided={}", setting.guided)});
+    std::vector<std::string> notices;
+    const HostScene host(description, notices);
+    const EmbreeScene intersector(host.meshes());
+    const Stopwatch watch;
+    const LightGuides guides(host, intersector);
+    const std::vector<std::uint32_t> pixels = gem_pixels(host.view(), intersector);
+    const Tracer trace = tracer_for(setting.companions);
+    std::vector<std::array<Opponent, num_seeds>> sums(pixels.size());
+    std::vector<ErrorRow> rows;
+    int done = 0;
+    for (int end = 4; end <= samples; end *= 2) {
+        tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t p) {
+            for (int seed = 0; seed < num_seeds; ++seed) {
+                SceneView view = guides.scene();
+                view.seed = 1000 + std::uint64_t(seed);
+                for (int sample = done; sample < end; ++sample) {
+                    const Opponent found = trace(view, intersector, pixels[p], std::uint32_t(sample));
+                    for (std::size_t k = 0; k < 3; ++k) sums[p][std::size_t(seed)][k] += found[k];
+                }
+            }
+        });
+        done = end;
+        std::vector<PixelSums> moments(pixels.size());
+        for (std::size_t p = 0; p < pixels.size(); ++p)
+            for (const Opponent& of_seed : sums[p])
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const double mean = of_seed[k] / done;
+                    moments[p].sum[k] += mean;
+                    moments[p].square[k] += mean * mean;
+                }
+        rows.push_back(error_row(moments));
+        rows.back().samples = done;
+        rows.back().seconds = watch.seconds() / num_seeds;
+    }
+    return rows;
+}
+
+/// Where a curve of errors over some cost comes down to `error`: between its points, and beyond them by the last two, in
+/// logarithms.
+double cost_at_error(const std::vector<ErrorRow>& rows, const std::function<double(const ErrorRow&)>& error_of,
+                     const std::function<double(const ErrorRow&)>& cost_of, double error) {
+    std::size_t i = 1;
+    while (i + 1 < rows.size() && error_of(rows[i]) > error) ++i;
+    const double x0 = std::log(cost_of(rows[i - 1])), x1 = std::log(cost_of(rows[i]));
+    const double y0 = std::log(error_of(rows[i - 1])), y1 = std::log(error_of(rows[i]));
+    return std::exp(x0 + (x1 - x0) * (std::log(error) - y0) / (y1 - y0));
+}
+
+void build_opal(const std::filesystem::path& recipe, const std::filesystem::path& opal) {
+    const std::string command = fmt::format("'{}' build '{}' -o '{}' > /dev/null", OPAL_MODEL, recipe.string(), opal.string());
+    if (std::system(command.c_str()) != 0) throw SystemError("failed: " + command);
+}
+
+}  // namespace
+
+void bench_convergence(const std::filesystem::path& folder, bool quick) {
+    std::filesystem::create_directories(folder);
+    const int width = quick ? 48 : 80, samples = quick ? 64 : 256;
+    AtomicFile curves_file(folder / "convergence.csv"), ratios_file(folder / "convergence_ratios.csv");
+    std::ofstream curves(curves_file.temporary_path()), ratios(ratios_file.temporary_path());
+    curves << "scene,setting,samples,seconds,relmse_luminance,relmse_luminance_se,relmse_chroma,relmse_chroma_se\n";
+    ratios << "scene,setting,samples_ratio_luminance,samples_ratio_chroma,time_ratio_luminance,time_ratio_chroma\n";
+    for (const std::string scene : {"precious_opal", "white_opal", "fire_opal"}) {
+        const std::filesystem::path example = std::filesystem::path(OPAL_EXAMPLES) / scene;
+        const std::filesystem::path opal = std::filesystem::absolute(folder) / (scene + ".vdb");
+        build_opal(example / "recipe.toml", opal);
+        std::vector<ErrorRow> reference;
+        for (const Setting& setting : settings) {
+            const std::vector<ErrorRow> rows = measure(example / "scene.toml", opal, setting, width, samples);
+            for (const ErrorRow& row : rows)
+                curves << fmt::format("{},\"{}\",{},{:.4g},{:.4g},{:.2g},{:.4g},{:.2g}\n", scene, setting.name, row.samples,
+                                      row.seconds, row.luminance, row.luminance_se, row.chroma, row.chroma_se);
+            if (reference.empty()) reference = rows;
+            const ErrorRow& last = reference.back();
+            const auto ratio = [&](const auto& error_of, const auto& cost_of) {
+                return cost_of(last) / cost_at_error(rows, error_of, cost_of, error_of(last));
+            };
+            const auto luminance = [](const ErrorRow& row) { return row.luminance; };
+            const auto chroma = [](const ErrorRow& row) { return row.chroma; };
+            const auto cost_samples = [](const ErrorRow& row) { return double(row.samples); };
+            const auto cost_seconds = [](const ErrorRow& row) { return row.seconds; };
+            const std::string line =
+                fmt::format("{},\"{}\",{:.3g},{:.3g},{:.3g},{:.3g}", scene, setting.name, ratio(luminance, cost_samples),
+                            ratio(chroma, cost_samples), ratio(luminance, cost_seconds), ratio(chroma, cost_seconds));
+            ratios << line << '\n';
+            fmt::print("{}\n", line);
+            std::fflush(stdout);
+        }
+        std::filesystem::remove(opal);
+    }
+    for (std::ofstream* stream : {&curves, &ratios}) {
+        stream->close();
+        if (!*stream) throw SystemError(fmt::format("{}: writing failed", folder.string()));
+    }
+    curves_file.commit();
+    ratios_file.commit();
+}
+
+}  // namespace opal
