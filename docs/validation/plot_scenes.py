@@ -44,7 +44,7 @@ def main():
             right.plot(*zip(*points), style, color=color, label=label if cosine == 1.0 else None)
     right.axhline(1.0, color="#999999", linewidth=0.8)
     right.set(xlabel="roughness", ylabel="share of light", ylim=(0, 1.05),
-              title="Light that turns once (dashed: 72 degrees); we follow all of it")
+              title="Light that turns once (dashed: at 72 degrees)")
     right.legend(fontsize=8)
     figure.savefig(here / "scenes.png", dpi=110)
 
