@@ -16,8 +16,9 @@ namespace {
 void check_grain_ids(const OpalAsset& asset, AssetCheck& check) {
     if (!asset.grain_id) {
         check.advice.push_back(
-            "no grid grain_id: sites alone, which opal-render cannot show; build with [output] grids = [\"grain_id\", \"shape\", "
-            "\"sites\"]");
+            "no grid grain_id: sites alone; opal-render shows the cells of additive and Voronoi sites where there is a shape; "
+            "build with "
+            "[output] grids = [\"grain_id\", \"shape\", \"sites\"] for other clients");
         return;
     }
     std::vector<bool> seen(asset.num_grains() + 1, false);

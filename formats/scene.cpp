@@ -10,6 +10,7 @@
 #include "formats/film_settings.h"
 #include "formats/illuminant.h"
 #include "formats/scene_lights.h"
+#include "formats/scene_objects.h"
 #include "formats/text.h"
 #include "formats/toml_enum.h"
 
@@ -26,8 +27,7 @@ const std::vector<std::string> upsampling_names = {"jakob-hanika", "smits", "bas
 const std::vector<std::string> diffraction_names = {"two-beam", "ewald-fresnel", "laue", "none"};
 const std::vector<std::string> dispersion_names = {"full", "bands", "none"};
 const std::vector<std::string> majorant_names = {"local", "global"};
-const std::vector<std::string> material_names = {"diffuse"};
-const std::vector<std::string> object_names = {"opal", "mesh", "plane", "sphere", "cylinder"};
+const std::vector<std::string> grains_names = {"auto", "cells", "voxels", "sphere-tracing", "hyperboloid"};
 
 std::optional<PixelWindow> read_crop(TomlSection& section, int width, int height) {
     if (!section.has("crop")) return std::nullopt;
@@ -134,7 +134,7 @@ ColorDescription read_color(TomlSection section) {
 OpalDescription read_opal(TomlSection section) {
     OpalDescription opal;
     opal.diffraction = enum_choice(section, "diffraction", opal.diffraction, diffraction_names);
-    section.choice("grains", "auto", {"auto", "voxels"});
+    opal.grains = enum_choice(section, "grains", opal.grains, grains_names);
     opal.ewald_tolerance = section.number("ewald_tolerance", opal.ewald_tolerance, NumberRange{0.0, 0.5, true});
     opal.max_odds = section.number("max_odds", opal.max_odds, NumberRange::between(1.0, 1.0e6));
     opal.dispersion = enum_choice(section, "dispersion", opal.dispersion, dispersion_names);
@@ -142,48 +142,6 @@ OpalDescription read_opal(TomlSection section) {
     opal.companions = static_cast<int>(section.integer("companions", opal.companions, 0, 7));
     section.finish();
     return opal;
-}
-
-MaterialDescription read_material(TomlSection section) {
-    MaterialDescription material;
-    material.name = section.text("name", "");
-    if (material.name.empty()) section.fail("name", "is needed: objects refer to a material by its name");
-    material.kind = enum_choice(section, "kind", material.kind, material_names);
-    material.albedo = section.vector3("albedo", material.albedo, NumberRange::between(0.0, 1.0), true);
-    section.finish();
-    return material;
-}
-
-ObjectDescription read_object(TomlSection section, const std::vector<std::string>& materials) {
-    const NumberRange length = NumberRange::positive(1.0e7);
-    ObjectDescription object;
-    if (!section.has("kind")) section.fail("kind", "is needed; allowed: " + join(object_names));
-    object.kind = enum_choice(section, "kind", object.kind, object_names);
-    object.name = section.text("name", "");
-    if (object.kind == ObjectKind::opal || object.kind == ObjectKind::mesh) {
-        object.file = section.path("file");
-        if (object.file.empty()) section.fail("file", "is needed for this kind of object");
-    }
-    if (object.kind == ObjectKind::opal) {
-        object.orientation_seed = static_cast<std::uint64_t>(section.integer("orientation_seed", 1, 0, INT64_MAX));
-        object.priority = static_cast<int>(section.integer("priority", 0, -1000, 1000));
-    } else {
-        if (!section.has("material")) section.fail("material", "is needed: the name of a [[material]]");
-        object.material = section.choice("material", "", materials);
-    }
-    if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
-        object.radius_mm = section.number("radius_mm", object.radius_mm, length);
-    if (object.kind == ObjectKind::cylinder) {
-        object.height_mm = section.number("height_mm", object.height_mm, length);
-        const double largest = std::min(object.radius_mm, object.height_mm);
-        object.bevel_mm = section.number("bevel_mm", std::min(object.bevel_mm, 0.5 * largest), NumberRange::from_zero(largest));
-    }
-    if (object.kind == ObjectKind::plane) object.size_mm = section.number("size_mm", object.size_mm, length);
-    object.translate_mm = section.vector3("translate_mm", object.translate_mm, NumberRange::between(-1.0e7, 1.0e7));
-    object.rotate_deg = section.vector3("rotate_deg", object.rotate_deg, NumberRange::between(-3.6e4, 3.6e4));
-    object.scale = section.number("scale", object.scale, NumberRange::between(1.0e-4, 1.0e6));
-    section.finish();
-    return object;
 }
 
 SceneDescription read_document(const TomlDocument& document) {
@@ -202,32 +160,12 @@ SceneDescription read_document(const TomlDocument& document) {
             section.fail("name", "'" + scene.materials.back().name + "' is already taken");
         names.push_back(scene.materials.back().name);
     }
-    for (TomlSection& section : root.sections("object")) scene.objects.push_back(read_object(section, names));
+    for (TomlSection& section : root.sections("object")) scene.objects.push_back(read_object(section, scene.materials));
     if (scene.objects.empty()) root.fail("object", "the scene is empty: at least one [[object]] is needed");
     for (TomlSection& section : root.sections("light")) scene.lights.push_back(read_light(section));
     scene.animation = read_animation(root.section("animation"));
     root.finish();
     return scene;
-}
-
-std::string vector_text(const std::array<double, 3>& v) {
-    return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
-}
-
-std::string object_to_toml(const ObjectDescription& object) {
-    std::string text = fmt::format("\n[[object]]\nkind = \"{}\"\n", object_names[static_cast<std::size_t>(object.kind)]);
-    if (!object.name.empty()) text += fmt::format("name = {}\n", toml_quoted(object.name));
-    if (!object.file.empty()) text += fmt::format("file = {}\n", toml_quoted(object.file.string()));
-    if (object.kind == ObjectKind::opal)
-        text += fmt::format("orientation_seed = {}\npriority = {}\n", object.orientation_seed, object.priority);
-    if (!object.material.empty()) text += fmt::format("material = {}\n", toml_quoted(object.material));
-    if (object.kind == ObjectKind::sphere || object.kind == ObjectKind::cylinder)
-        text += fmt::format("radius_mm = {}\n", object.radius_mm);
-    if (object.kind == ObjectKind::cylinder)
-        text += fmt::format("height_mm = {}\nbevel_mm = {}\n", object.height_mm, object.bevel_mm);
-    if (object.kind == ObjectKind::plane) text += fmt::format("size_mm = {}\n", object.size_mm);
-    return text + fmt::format("translate_mm = {}\nrotate_deg = {}\nscale = {}\n", vector_text(object.translate_mm),
-                              vector_text(object.rotate_deg), object.scale);
 }
 
 }  // namespace
@@ -271,12 +209,11 @@ std::string scene_to_toml(const SceneDescription& scene) {
         text += fmt::format("temperature_k = {}\n", scene.environment.temperature_k);
     text += fmt::format(
         "\n[opal]\ndiffraction = \"{}\"\newald_tolerance = {}\nmax_odds = {}\ndispersion = \"{}\"\nmajorants = \"{}\"\n"
-        "grains = \"voxels\"\ncompanions = {}\n",
+        "grains = \"{}\"\ncompanions = {}\n",
         name(diffraction_names, scene.opal.diffraction), scene.opal.ewald_tolerance, scene.opal.max_odds,
-        name(dispersion_names, scene.opal.dispersion), name(majorant_names, scene.opal.majorants), scene.opal.companions);
-    for (const MaterialDescription& material : scene.materials)
-        text += fmt::format("\n[[material]]\nname = {}\nkind = \"{}\"\nalbedo = {}\n", toml_quoted(material.name),
-                            name(material_names, material.kind), vector_text(material.albedo));
+        name(dispersion_names, scene.opal.dispersion), name(majorant_names, scene.opal.majorants),
+        name(grains_names, scene.opal.grains), scene.opal.companions);
+    for (const MaterialDescription& material : scene.materials) text += material_to_toml(material);
     for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
     for (const LightDescription& light : scene.lights) text += light_to_toml(light);
     return text + animation_to_toml(scene.animation);

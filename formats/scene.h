@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/material.h"
+
 namespace opal {
 
 enum class SamplerKind { sobol, stratified, independent };
@@ -21,7 +23,7 @@ enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
 enum class Dispersion { full, bands, none };
 enum class LightKind { area, sphere, spot, sun };
 enum class MajorantKind { local, global };
-enum class MaterialKind { diffuse };
+enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
 /// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
 /// values linear, cut at 1.
 enum class ToneCurve { filmic, srgb, none };
@@ -113,14 +115,15 @@ struct OpalDescription {
     Dispersion dispersion =
         Dispersion::full;  ///< full: bands and refraction; bands: diffraction alone; none: indices at 589.3 nm
     MajorantKind majorants = MajorantKind::local;
-    int companions = 3;  ///< wavelengths that travel with the hero, 0 to 7
+    GrainsKind grains =
+        GrainsKind::automatic;  ///< automatic: cells where the file's sites describe the grains exactly, else voxels
+    int companions = 3;         ///< wavelengths that travel with the hero, 0 to 7
+
+    bool operator==(const OpalDescription&) const = default;
 };
 
-struct MaterialDescription {
-    std::string name;
-    MaterialKind kind = MaterialKind::diffuse;
-    std::array<double, 3> albedo = {0.5, 0.5, 0.5};  ///< linear sRGB reflectance
-};
+/// The least roughness of a surface that is not smooth.
+inline constexpr double min_scene_roughness = 1.0e-3;
 
 struct ObjectDescription {
     ObjectKind kind = ObjectKind::opal;
@@ -134,8 +137,13 @@ struct ObjectDescription {
     double height_mm = 2.0;   ///< cylinder: from z = 0 down to -height, so that things stand on it
     double bevel_mm = 0.3;    ///< cylinder: rounding of its upper edge
     double size_mm = 2000.0;  ///< plane: edge of the square
-    int priority = 0;         ///< opal: where bodies overlap the one of higher priority is there; of equal ones the later
-    std::uint64_t orientation_seed = 1;  ///< opal made elsewhere: seed of its grains' orientations
+    int priority = 0;  ///< opal, dielectric: where bodies overlap the one of higher priority is there; of equal ones the later
+    std::optional<double> smooth_normals_deg;  ///< mesh: faces that meet at less share a normal; unset: as the file says
+    double roughness = 0.0;                    ///< opal: GGX alpha of its surface; 0: polished
+    bool exact = false;                        ///< opal: its Bezier patches themselves, not the level set's surface
+    std::uint64_t orientation_seed = 1;        ///< opal made elsewhere: seed of its grains' orientations
+
+    bool operator==(const ObjectDescription&) const = default;
 };
 
 /// How colours of the scene become spectra.

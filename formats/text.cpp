@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -45,6 +47,10 @@ std::string join(const std::vector<std::string>& names, std::string_view separat
         joined += name;
     }
     return joined;
+}
+
+std::string vector_text(const std::array<double, 3>& v) {
+    return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
 }
 
 std::string toml_quoted(std::string_view text) {

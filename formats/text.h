@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 /// "a, b, c".
 std::string join(const std::vector<std::string>& names, std::string_view separator = ", ");
+
+/// "[x, y, z]", as TOML has it.
+std::string vector_text(const std::array<double, 3>& v);
 
 /// A TOML basic string: quoted, with what needs it escaped.
 std::string toml_quoted(std::string_view text);

@@ -109,7 +109,7 @@ void print_summary(const RenderOptions& options, const SceneDescription& scene, 
 
 }  // namespace
 
-StillResult render_still(const RenderOptions& options, const SceneDescription& scene) {
+StillResult render_still(const RenderOptions& options, const SceneDescription& scene, OpalCache& opals) {
     require_writable(options.output);
     require_writable(options.png());
     if (!options.stats_file.empty()) require_writable(options.stats_file);
@@ -118,7 +118,7 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     StageSeconds stages;
     Stopwatch watch;
     std::vector<std::string> notices;
-    const HostScene host(scene, notices);
+    const HostScene host(scene, notices, &opals);
     stages.tables = host.tables_seconds();
     stages.objects = watch.seconds() - stages.tables;
     watch = {};
@@ -178,7 +178,8 @@ int command_render(int argc, char** argv) {
         return 0;
     }
     if (!options.frames.empty()) throw InputError(fmt::format("--frames {}: the scene has no [animation]", options.frames));
-    render_still(options, scene);
+    OpalCache opals;
+    render_still(options, scene, opals);
     return 0;
 }
 

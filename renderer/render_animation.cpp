@@ -58,6 +58,7 @@ void render_animation(const RenderOptions& options, const SceneDescription& scen
     sheet_path.replace_extension(".sheet.png");
     require_writable(sheet_path);
     ContactSheet sheet(range.last - range.first + 1, window.width(), window.height());
+    OpalCache opals;
     for (int frame = range.first; frame <= range.last; ++frame) {
         const RenderOptions frame_options = options_of_frame(options, frame);
         const SceneDescription frame_scene = scene_of_frame(scene, frame);
@@ -67,7 +68,7 @@ void render_animation(const RenderOptions& options, const SceneDescription& scen
                 fmt::print("{}: finished already\n", frame_options.output.string());
                 continue;
             }
-        const StillResult still = render_still(frame_options, frame_scene);
+        const StillResult still = render_still(frame_options, frame_scene, opals);
         sheet.add(still.display, std::to_string(frame));
         if (still.interrupted) break;
     }

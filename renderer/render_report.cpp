@@ -50,6 +50,13 @@ nlohmann::json checkpoint_report(const CheckpointCounts& counts) {
     return report;
 }
 
+nlohmann::json grains_report(const HostScene& host) {
+    nlohmann::json opals = nlohmann::json::array();
+    for (const auto& opal : host.opals())
+        opals.push_back({{"method", opal->grains().method_name()}, {"memory_bytes", opal->grains().size_bytes()}});
+    return opals;
+}
+
 }  // namespace
 
 nlohmann::json render_report(const SceneDescription& scene, const HostScene& host, const RenderOutcome& outcome, const Film& film,
@@ -84,6 +91,8 @@ nlohmann::json render_report(const SceneDescription& scene, const HostScene& hos
               {"not_a_number", counters.not_a_number},
               {"majorant_violations", counters.majorant_violations}}},
             {"paths_per_second", double(outcome.new_samples) / std::max(1.0e-9, outcome.seconds)},
+            {"grains", grains_report(host)},
+            {"paths_per_second", double(samples) / std::max(1.0e-9, outcome.seconds)},
             {"truncated_rgb",
              {outcome.totals.truncated_rgb[0] / double(samples), outcome.totals.truncated_rgb[1] / double(samples),
               outcome.totals.truncated_rgb[2] / double(samples)}},

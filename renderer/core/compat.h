@@ -16,5 +16,13 @@
 #define OPAL_SIMD
 #endif
 
+/// How many neighbours of a cell are looked at together: as many as a vector register holds on the host; a thread of a device
+/// takes them one by one.
+#if defined(__CUDA_ARCH__)
+#define OPAL_CELL_LANES 1
+#else
+#define OPAL_CELL_LANES 8
+#endif
+
 #include <math.h>
 #include <stdint.h>

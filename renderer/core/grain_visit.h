@@ -24,6 +24,7 @@ struct GrainRates {
 template <int N>
 struct GrainVisit {
     int grain = 0;                   ///< 0: not known yet
+    int cell = -1;                   ///< where the light is, or nearly; -1: not known, or grains are not made of cells
     bool fresh = true;               ///< nothing below is drawn yet
     bool at_boundary = false;        ///< the stay begins where the light comes in from outside the grain
     float block_nm = 0.0f;           ///< thickness of a coherent block
@@ -48,7 +49,10 @@ struct GrainVisit {
     OPAL_HD void enter(int next_grain) {
         grain = next_grain;
         fresh = true;
-        if (next_grain == 0) clear_mm = 0.0f;
+        if (next_grain == 0) {
+            clear_mm = 0.0f;
+            cell = -1;
+        }
         at_boundary = true;
     }
 };

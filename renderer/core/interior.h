@@ -149,10 +149,13 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
         const float scale = opal.world_from_object.scale;
         const Vec3 direction = opal.world_from_object.local_from_world_direction(ray.direction);
         const Vec3 walk_origin = opal.world_from_object.local_from_world_point(ray.origin);
-        GrainWalk walk(opal.grains, walk_origin, direction);
+        GrainPath walk(opal.grains, walk_origin, direction, visit.cell);
         float reached = 0.0f;  // object mm, like everything on the walk
         float entered_mm = 0.0f;
-        if (visit.grain == 0) visit.enter(walk.next_grain(0, reached, surface.distance_mm() / scale));
+        if (visit.grain == 0) {
+            visit.enter(walk.next_grain(0, reached, surface.distance_mm() / scale));
+            visit.cell = walk.cell();
+        }
         float clear_mm = visit.clear_mm;  // no surface within this distance of the origin
         bool clear_known = false;
         while (visit.grain != 0) {
@@ -166,7 +169,8 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             if (entered_mm == 0.0f && flight.closed_form() && exchanges_beams(visit)) {
                 clear_mm = max_of(clear_mm, clearance_mm(opal, ray.origin));
                 clear_known = true;
-                const float ball_mm = min_of(clear_mm, scale * grain_clearance_mm(opal.grains, walk_origin, visit.grain));
+                const float ball_mm =
+                    min_of(clear_mm, scale * grain_clearance_mm(opal.grains, walk_origin, visit.grain, visit.cell));
                 if (ball_mm > exchange_min_ball_mm)
                     return exchange_in_ball(opal, wavelengths, medium, ray, ball_mm, clear_mm, flight, visit, weights, random,
                                             counters);
@@ -180,6 +184,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             }
             const float surface_mm = turn_mm > clear_mm ? surface.distance_mm() : 3.0e38f;
             const int next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
+            visit.cell = walk.cell();
             const float leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);
             const float end_mm = min_of(min_of(turn_mm, leaves_mm), surface_mm);
             const float passed_mm = flight.advance(end_mm, weights);

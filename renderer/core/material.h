@@ -5,12 +5,17 @@
 
 namespace opal {
 
-enum class MaterialModel { diffuse };
+enum class MaterialModel { diffuse, conductor, plastic };
 
 /// What covers an opaque surface.
 struct MaterialView {
     MaterialModel model = MaterialModel::diffuse;
-    UpsampledColor albedo;
+    UpsampledColor albedo;               ///< diffuse; plastic: of the base
+    float roughness = 0.0f;              ///< conductor, plastic: GGX alpha; below min_roughness: smooth
+    const float* index = nullptr;        ///< conductor; plastic: of the coat; 1 nm table
+    const float* extinction = nullptr;   ///< conductor: imaginary part of the index; 1 nm table
+    const float* coat_albedo = nullptr;  ///< plastic with a rough coat, see Plastic
+    float mean_coat_albedo = 0.0f;
 };
 
 }  // namespace opal

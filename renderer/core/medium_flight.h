@@ -132,7 +132,11 @@ class MediumFlight {
             return scatter(cell.min[1], cell.min[2]);
         const Vec3 place_mm = origin_mm_ + reached_mm_ * step_mm_;
         float rest[num_medium_fields];
-        for (int f = 0; f < num_medium_fields; ++f) rest[f] = cell.max[f] > cell.min[f] ? rest_of(f, cell, place_mm) : 0.0f;
+        for (int f = 0; f < num_medium_fields; ++f) {
+            // One density may stand for several coefficients: then one look is enough.
+            const bool same = f > 0 && view_.fields[f].grid == view_.fields[0].grid;
+            rest[f] = same ? rest[0] : cell.max[f] > cell.min[f] ? rest_of(f, cell, place_mm) : 0.0f;
+        }
         const float hero_per_mm = rest[1] * medium_.sigma_rayleigh.v[0] + rest[2] * medium_.sigma_mie.v[0];
         if (random_.next() * rest_per_mm < hero_per_mm) return scatter(rest[1], rest[2]);
         float largest = 0.0f;

@@ -100,14 +100,17 @@ class PathTracer {
             if (surface.body >= 0) {
                 const bool entering = dot(ray.direction, surface.geometric_normal) < 0.0f;
                 const NestedBodies beyond = entering ? bodies_.entered(surface.body) : bodies_.left(surface.body);
-                if (beyond.current() == body) {
-                    // Another body, of higher priority, is on both sides: there is no surface here.
+                if (object_of(beyond.current()) == object_of(body)) {
+                    // The same object, of higher priority, is on both sides: there is no surface here.
                     bodies_ = beyond;
                     visit_.clear_mm = 0.0f;
                     ray = leaving(surface, ray.direction);
                     continue;
                 }
-                ray = meet_body(ray, surface, beyond, bounce);
+                if (scene_.bodies[surface.body].roughness < min_roughness)
+                    ray = meet_body(ray, surface, beyond, bounce);
+                else if (!meet_rough_body(ray, surface, beyond))
+                    return;
             } else if (!meet_opaque(ray, surface)) {
                 return;
             }
@@ -122,6 +125,9 @@ class PathTracer {
         optics_ = lane_optics(scene_.bodies[body], wavelengths_);
         loaded_body_ = body;
     }
+
+    /// -1 in the open.
+    OPAL_HD int object_of(int body) const { return body < 0 ? -1 : scene_.bodies[body].object; }
 
     OPAL_HD void lane_indices(int body, float* index) {
         for (int i = 0; i < N; ++i)
@@ -181,20 +187,53 @@ class PathTracer {
         interaction.direction = ray.direction;
         lane_indices(bodies_.current(), interaction.index_before);
         // From inside a body the lights are behind its surface, where no straight line leads.
-        connected_ = bodies_.current() < 0 && connects_to_lights(material);
-        if (connected_ && scene_.light_sampling != LightSampling::scattering) add_sampled_light(material, interaction);
-        const BsdfSample<N> sample = sample_bsdf(material, scene_.spectra, wavelengths_, interaction, random_);
-        if (sample.direction.x == 0.0f && sample.direction.y == 0.0f && sample.direction.z == 0.0f) return false;
+        const bool connects = bodies_.current() < 0 && connects_to_lights(material);
+        if (connects) connect_lights(interaction, interaction.face_normal());
+        visit_.renew();
+        return go_on(sample_bsdf(material, scene_.spectra, wavelengths_, interaction, random_), connects, surface, ray);
+    }
+
+    /// The same at the rough surface of a body; lights are connected on the side that is in the open.
+    OPAL_HD bool meet_rough_body(Ray& ray, const Surface& surface, NestedBodies beyond) {
+        SurfaceInteraction<N> interaction;
+        interaction.surface = surface;
+        interaction.direction = ray.direction;
+        lane_indices(bodies_.current(), interaction.index_before);
+        lane_indices(beyond.current(), interaction.index_beyond);
+        const bool open_before = bodies_.current() < 0, open_beyond = beyond.current() < 0;
+        if (open_before) connect_lights(interaction, interaction.face_normal());
+        if (open_beyond) connect_lights(interaction, -interaction.face_normal());
+        const BsdfSample<N> sample =
+            sample_interface(scene_.bodies[surface.body].roughness, wavelengths_, interaction, weights_, random_);
+        if (sample.transmitted) {
+            bodies_ = beyond;
+            visit_.enter(0);
+        } else {
+            visit_.renew();
+        }
+        return go_on(sample, sample.transmitted ? open_beyond : open_before, surface, ray);
+    }
+
+    /// Follows a drawn direction; `connects`: lights were connected on its side.
+    OPAL_HD bool go_on(const BsdfSample<N>& sample, bool connects, const Surface& surface, Ray& ray) {
+        if (dot(sample.direction, sample.direction) == 0.0f) return false;
         for (int i = 0; i < weights_.count; ++i) {
             weights_.throughput.v[i] *= sample.weight.v[i];
             weights_.ratio.v[i] *= sample.ratio.v[i];
         }
         pdf_ = sample.pdf;
+        connected_ = connects && pdf_ > 0.0f;
         drawn_from_ = surface.position;
-        if (pdf_ <= 0.0f) connected_ = false;
-        visit_.renew();
         ray = leaving(surface, sample.direction);
         return true;
+    }
+
+    /// What the surface that the path has come to sends from there into a direction.
+    OPAL_HD BsdfValue<N> evaluate(const SurfaceInteraction<N>& interaction, Vec3 direction) const {
+        const Surface& surface = interaction.surface;
+        if (surface.body >= 0)
+            return evaluate_interface(scene_.bodies[surface.body].roughness, wavelengths_, interaction, weights_, direction);
+        return evaluate_bsdf(scene_.materials[surface.material], scene_.spectra, wavelengths_, interaction, direction);
     }
 
     /// Weight of a direction drawn with density `pdf` that could have been drawn with `other_pdf` as well: the power heuristic
@@ -205,18 +244,18 @@ class PathTracer {
     }
 
     /// Light that a point receives from a drawn direction of one of the lights (next-event estimation), weighted against the
-    /// directions that the path itself draws.
-    OPAL_HD void add_sampled_light(const MaterialView& material, const SurfaceInteraction<N>& interaction) {
+    /// directions that the path itself draws. `normal`: towards the side of the light.
+    OPAL_HD void connect_lights(const SurfaceInteraction<N>& interaction, Vec3 normal) {
+        if (scene_.light_sampling == LightSampling::scattering) return;
         const Vec3 position = interaction.surface.position;
         const float u = scene_.lights.count > 0 ? random_.next() : 0.0f;
         const float u1 = random_.next(), u2 = random_.next();
         const LightSample sample = sample_light(scene_.lights, scene_.environment, position, u, u1, u2);
-        const Vec3 normal = interaction.face_normal();
         if (!(sample.pdf > 0.0f) || dot(sample.direction, normal) <= 0.0f) return;
         const Ray shadow{offset_origin(position, normal, sample.direction), sample.direction};
         const float reach_mm = sample.distance_mm * (1.0f - 1.0e-5f);
         if (lights_occlude(scene_.lights, shadow, reach_mm, sample.light) || intersector_.occluded(shadow, reach_mm)) return;
-        const BsdfValue<N> value = evaluate_bsdf(material, scene_.spectra, wavelengths_, interaction, sample.direction);
+        const BsdfValue<N> value = evaluate(interaction, sample.direction);
         const float weight = scene_.light_sampling == LightSampling::both ? power_heuristic(sample.pdf, value.pdf) : 1.0f;
         Lanes<N> factor;
         for (int i = 0; i < weights_.count; ++i) factor.v[i] = weight * value.f_cosine.v[i] / sample.pdf;

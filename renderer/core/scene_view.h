@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/bezier_hit.h"
 #include "renderer/core/camera.h"
 #include "renderer/core/crystal.h"
 #include "renderer/core/environment.h"
 #include "renderer/core/field_lookup.h"
-#include "renderer/core/grain_walk.h"
+#include "renderer/core/grain_path.h"
 #include "renderer/core/light_guide.h"
 #include "renderer/core/lights.h"
 #include "renderer/core/material.h"
@@ -23,8 +24,9 @@ struct MeshView {
     const Vec3* positions = nullptr;
     const Vec3* normals = nullptr;  ///< per vertex, outward; null where the faces are flat
     const uint32_t* indices = nullptr;
-    int material = -1;  ///< of an opaque surface; -1 where it bounds a body
-    int body = -1;      ///< that the surface bounds; -1 where it is opaque
+    int material = -1;      ///< of an opaque surface; -1 where it bounds a body
+    int body = -1;          ///< that the surface bounds; -1 where it is opaque
+    PatchMeshView patches;  ///< of an exact surface
 };
 
 /// How lattice planes turn light.
@@ -32,9 +34,10 @@ enum class Diffraction { none, two_beam, ewald_fresnel, laue };
 
 /// A transparent body: an opal, or glass (without diffraction).
 struct OpalView {
+    int object = 0;  ///< bodies of one object (the parts of an exact surface) are one: there is nothing between them
     Diffraction diffraction = Diffraction::two_beam;
     RigidTransform world_from_object;
-    GrainField grains;
+    GrainsView grains;
     FieldView shape;                           ///< level set of the surface, object mm; its grid may be absent
     const Quaternion* orientations = nullptr;  ///< lattice -> object; element g - 1 is grain g's
     const float* grain_size_mm = nullptr;      ///< object mm; element g - 1: diameter of a ball as large as grain g
@@ -43,6 +46,7 @@ struct OpalView {
     const float* relative_index = nullptr;     ///< 1 nm table: n_sphere / n_medium
     const float* surface_index = nullptr;      ///< 1 nm table: effective index where light refracts
     bool surface_disperses = false;            ///< surface_index varies
+    float roughness = 0.0f;                    ///< of the surface, GGX alpha; below min_roughness: smooth
     PlanePair pairs[max_tested_pairs];
     PlaneFamilies families;  ///< of the pairs
     int num_pairs = 0;
@@ -100,7 +104,7 @@ struct RayHit {
     float distance_mm = 0.0f;
     uint32_t mesh = 0;
     uint32_t triangle = 0;
-    float u = 0.0f, v = 0.0f;
+    float u = 0.0f, v = 0.0f;  ///< barycentric; on an exact surface the patch's parameters
 };
 
 /// Geometry at a hit: normals are outward and unit length.
@@ -112,8 +116,21 @@ struct Surface {
     int body;
 };
 
+OPAL_HD inline Surface patch_surface_at(const MeshView& mesh, const RayHit& hit) {
+    const BezierPatch& patch = mesh.patches.patches[mesh.patches.patch_of_triangle[hit.triangle]];
+    const BezierPoint point = evaluate_bezier(patch, double(hit.u), double(hit.v));
+    Surface surface;
+    surface.position = {float(point.position_mm[0]), float(point.position_mm[1]), float(point.position_mm[2])};
+    surface.geometric_normal = {float(point.normal[0]), float(point.normal[1]), float(point.normal[2])};
+    surface.shading_normal = surface.geometric_normal;
+    surface.material = mesh.material;
+    surface.body = mesh.body;
+    return surface;
+}
+
 OPAL_HD inline Surface surface_at(const SceneView& scene, const RayHit& hit) {
     const MeshView& mesh = scene.meshes[hit.mesh];
+    if (mesh.patches.patches) return patch_surface_at(mesh, hit);
     const uint32_t* corner = mesh.indices + 3 * size_t(hit.triangle);
     const Vec3 a = mesh.positions[corner[0]], b = mesh.positions[corner[1]], c = mesh.positions[corner[2]];
     const float w = 1.0f - hit.u - hit.v;

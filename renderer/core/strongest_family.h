@@ -52,11 +52,11 @@ OPAL_HD inline FamilyTurn turn_by_family(const OpalView& opal, const SpectrumTab
             optics.contrast[i] = table_at(opal.contrast, wavelength_nm);
         }
         for (const bool p_polarized : {false, true}) {
-            const BeamGeometry beam{cosine, pair.g_per_nm, pair.form, block_nm, p_polarized};
-            float rate_per_mm[family_band_lanes];
-            if (!reflection_rates(beam, optics, opal.max_odds / size_mm, rate_per_mm)) continue;
+            const BeamBlock beam = single_beam(cosine, pair.g_per_nm, pair.form, block_nm, p_polarized);
+            float rate_per_mm[family_band_lanes][beam_block_size];
+            reflection_rates(beam, optics, opal.max_odds / size_mm, rate_per_mm);
             for (int i = 0; i < family_band_lanes; ++i) {
-                const float odds = rate_per_mm[i] * chord_mm;
+                const float odds = rate_per_mm[i][0] * chord_mm;
                 const float turned = 0.5f * response[i] * step_nm * odds / (1.0f + odds);
                 turn.turned += turned;
                 sum_nm += turned * optics.wavelength_nm[i];

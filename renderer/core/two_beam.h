@@ -69,6 +69,20 @@ struct BeamBlock {
     float share[beam_block_size];      ///< part of the path that lies in blocks which hold this family
 };
 
+/// One beam, in every place of a block.
+OPAL_HD inline BeamBlock single_beam(float cosine, float g_per_nm, float form, float block_nm, bool p_polarized) {
+    BeamBlock beams;
+    for (int j = 0; j < beam_block_size; ++j) {
+        beams.cosine[j] = cosine;
+        beams.g_per_nm[j] = g_per_nm;
+        beams.form[j] = form;
+        beams.block_nm[j] = block_nm;
+        beams.polarized[j] = p_polarized ? 1.0f : 0.0f;
+        beams.share[j] = 1.0f;
+    }
+    return beams;
+}
+
 /// C of the coupling: 1 (s) or |1 - 2 c^2| (p).
 OPAL_HD inline float polarization_factor(float polarized, float cosine) {
     return 1.0f - polarized + polarized * fabsf(1.0f - 2.0f * cosine * cosine);

@@ -76,6 +76,7 @@ struct Frame {
         bitangent = {b, sign + n.y * n.y * a, -n.y};
     }
     OPAL_HD Vec3 world_from_local(Vec3 v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+    OPAL_HD Vec3 local_from_world(Vec3 v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
 };
 
 /// Unit quaternion (x, y, z, w), the order of the file.

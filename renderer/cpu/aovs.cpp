@@ -83,10 +83,10 @@ void write_grain_id(const AovScene& scene, const FirstHit& first, int, int, floa
     const OpalView* opal = opal_behind(scene, first);
     if (!opal) return;
     const RigidTransform& transform = opal->world_from_object;
-    GrainWalk walk(opal->grains, transform.local_from_world_point(first.surface.position),
+    GrainPath walk(opal->grains, transform.local_from_world_point(first.surface.position),
                    transform.local_from_world_direction(-first.surface.geometric_normal));
     float distance = 0.0f;
-    *target = float(walk.next_grain(0, distance, 3.0f / opal->grains.voxels_per_mm));
+    *target = float(walk.next_grain(0, distance, 3.0f / opal->grains.voxels.voxels_per_mm));
 }
 
 void write_albedo(const AovScene& scene, const FirstHit&, int x, int y, float* target) {
@@ -111,7 +111,7 @@ FamilyTurn first_turn(const AovScene& scene, const OpalView& opal, const Ray& in
     RayHit exit;
     if (!scene.intersector.closest(inside, exit)) return {};
     const RigidTransform& transform = opal.world_from_object;
-    GrainWalk walk(opal.grains, transform.local_from_world_point(inside.origin),
+    GrainPath walk(opal.grains, transform.local_from_world_point(inside.origin),
                    transform.local_from_world_direction(inside.direction));
     const float end = exit.distance_mm / transform.scale;
     float distance = 0.0f;

@@ -3,6 +3,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <cmath>
 #include <limits>
 
 #include "formats/error.h"
@@ -27,12 +28,13 @@ void fill_ray(RTCRay& target, const Ray& ray) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
+EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) : meshes_(meshes) {
     device_ = rtcNewDevice(nullptr);
     if (!device_) throw SystemError("Embree could not be started");
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     for (const MeshData& mesh : meshes) {
+        exact_ = exact_ || !mesh.patches.empty();
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         // Copied into Embree's own buffers: it reads 16 bytes at the last vertex.
         auto* positions = static_cast<Vec3*>(
@@ -58,19 +60,38 @@ EmbreeScene::~EmbreeScene() {
 }
 
 bool EmbreeScene::closest(const Ray& ray, RayHit& hit) const {
-    RTCRayHit query;
-    fill_ray(query.ray, ray);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
-    return true;
+    float nearest_mm = 0.0f;
+    while (true) {
+        RTCRayHit query;
+        fill_ray(query.ray, ray);
+        query.ray.tnear = nearest_mm;
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene_, &context, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+        hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+        const MeshData& mesh = meshes_[hit.mesh];
+        if (mesh.patches.empty()) return true;
+        const PatchHit exact = hit_on_patch(mesh.patch_view(), mesh.indices.data() + 3 * std::size_t(hit.triangle), ray,
+                                            hit.triangle, {hit.u, hit.v, hit.distance_mm, true});
+        if (exact.met) {
+            hit.u = exact.u;
+            hit.v = exact.v;
+            hit.distance_mm = exact.distance_mm;
+            return true;
+        }
+        // The triangle is not the surface: on behind it.
+        nearest_mm = std::nextafter(hit.distance_mm * (1.0f + 1.0e-6f), std::numeric_limits<float>::infinity());
+    }
 }
 
 bool EmbreeScene::occluded(const Ray& ray, float max_mm) const {
+    if (exact_) {
+        RayHit hit;
+        return closest(ray, hit) && hit.distance_mm < max_mm;
+    }
     RTCRay query;
     fill_ray(query, ray);
     query.tfar = max_mm;

@@ -27,6 +27,8 @@ class EmbreeScene {
   private:
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
+    const std::vector<MeshData>& meshes_;
+    bool exact_ = false;  ///< some surfaces are patches
 };
 
 }  // namespace opal

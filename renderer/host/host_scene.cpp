@@ -10,7 +10,8 @@
 #include "formats/error.h"
 #include "formats/units.h"
 #include "renderer/host/enclosure.h"
-#include "renderer/host/upsampler.h"
+#include "renderer/host/mesh_file.h"
+#include "renderer/host/mesh_topology.h"
 
 namespace opal {
 namespace {
@@ -86,21 +87,21 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
     return camera;
 }
 
-HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices)
+HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
     : environment_(make_environment(description.environment, description.color.upsampling)),
       lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
       spectra_(make_spectra(description, environment_, lights_)),
       guided_(description.render.guided) {
     tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
-        materials_.push_back({MaterialModel::diffuse,
-                              upsample_reflectance(spectra_.upsampling, {float(material.albedo[0]), float(material.albedo[1]),
-                                                                         float(material.albedo[2])})});
+        material_data_.emplace_back(material, spectra_.upsampling, description.opal.dispersion);
+    for (const MaterialData& material : material_data_) materials_.push_back(material.view());
+    OpalCache own;
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
-            add_opal(object, description.opal, notices);
+            add_opal(object, (opals ? *opals : own).find(object, description.opal, notices));
         else
-            add_mesh(object, description.materials);
+            add_mesh(object, description, notices);
     }
     const RenderDescription& render = description.render;
     view_.camera = make_camera(description.camera, render.width, render.height);
@@ -123,10 +124,15 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     view_.filter = pixel_filter(render);
 }
 
-void HostScene::add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices) {
-    opals_.push_back(std::make_unique<OpalBody>(object, settings, notices));
-    meshes_.push_back(opals_.back()->take_surface());
-    add_body(opals_.back()->view(), object.priority);
+void HostScene::add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal) {
+    const RigidTransform transform = object_transform(object);
+    opals_.push_back(std::move(opal));
+    OpalView view = opals_.back()->placed(transform);
+    view.object = int(opals_.size() + glasses_.size());
+    for (MeshData& surface : opals_.back()->surfaces(transform)) {
+        meshes_.push_back(std::move(surface));
+        add_body(view, object.priority);
+    }
 }
 
 /// The last mesh bounds it.
@@ -188,7 +194,7 @@ int HostScene::reciprocal_points() const {
     return most;
 }
 
-void HostScene::add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials) {
+void HostScene::add_mesh(const ObjectDescription& object, const SceneDescription& scene, std::vector<std::string>& notices) {
     MeshData mesh;
     switch (object.kind) {
         case ObjectKind::plane:
@@ -201,14 +207,31 @@ void HostScene::add_mesh(const ObjectDescription& object, const std::vector<Mate
             mesh = make_cylinder(object.radius_mm, object.height_mm, object.bevel_mm);
             break;
         default:
-            mesh = load_mesh(object.file);
+            mesh = load_mesh(object.file, object.smooth_normals_deg, notices);
             break;
     }
-    transform_mesh(mesh, object_transform(object));
-    const auto found = std::find_if(materials.begin(), materials.end(),
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
                                     [&](const MaterialDescription& material) { return material.name == object.material; });
-    mesh.material = static_cast<int>(found - materials.begin());
+    if (found->kind == MaterialKind::dielectric) return add_glass(object, *found, scene.opal, std::move(mesh));
+    transform_mesh(mesh, object_transform(object));
+    mesh.material = static_cast<int>(found - scene.materials.begin());
     meshes_.push_back(std::move(mesh));
+}
+
+void HostScene::add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
+                          MeshData mesh) {
+    if (const std::size_t open = count_open_edges(mesh); open > 0)
+        throw InputError(fmt::format("{}: the surface has {} open edges; a dielectric ('{}') needs a closed one",
+                                     object.file.string(), open, material.name));
+    if (signed_volume6(mesh) < 0.0) turn_inside_out(mesh);
+    openvdb::BBoxd bounds_mm;
+    for (const Vec3& p : mesh.positions) bounds_mm.expand(openvdb::Vec3d(double(p.x), double(p.y), double(p.z)));
+    glasses_.push_back(std::make_unique<GlassBody>(object, material, settings, bounds_mm));
+    transform_mesh(mesh, object_transform(object));
+    meshes_.push_back(std::move(mesh));
+    OpalView view = glasses_.back()->view();
+    view.object = int(opals_.size() + glasses_.size());
+    add_body(view, object.priority);
 }
 
 }  // namespace opal

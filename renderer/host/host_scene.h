@@ -9,9 +9,11 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
+#include "renderer/host/glass_body.h"
+#include "renderer/host/material_data.h"
 #include "renderer/host/light_data.h"
 #include "renderer/host/mesh_data.h"
-#include "renderer/host/opal_body.h"
+#include "renderer/host/opal_cache.h"
 #include "renderer/host/spectrum_tables.h"
 
 namespace opal {
@@ -19,8 +21,9 @@ namespace opal {
 /// Everything a scene needs in memory, and the plain view of it that the transport reads. Not movable: the view points inside.
 class HostScene {
   public:
-    /// Loads all that the description names. Throws InputError. Notices for the user are appended to `notices`.
-    HostScene(const SceneDescription& description, std::vector<std::string>& notices);
+    /// Loads all that the description names, but for opals that `opals` knows. Throws InputError. Notices for the user are
+    /// appended to `notices`.
+    HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals = nullptr);
     HostScene(const HostScene&) = delete;
     HostScene& operator=(const HostScene&) = delete;
 
@@ -38,24 +41,29 @@ class HostScene {
     int reciprocal_points() const;
     /// Of all opals together.
     std::size_t num_grains() const;
+    const std::vector<std::unique_ptr<OpalBody>>& opals() const { return opals_; }
     /// Of the first opal; empty without one, and for files made elsewhere.
     const std::string& recipe_toml() const;
 
   private:
-    void add_opal(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices);
+    void add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal);
     void add_body(const OpalView& view, int priority);
     void order_bodies();
+    void add_mesh(const ObjectDescription& object, const SceneDescription& scene, std::vector<std::string>& notices);
+    void add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
+                   MeshData mesh);
     void require_lights_outside(const std::vector<LightDescription>& lights) const;
-    void add_mesh(const ObjectDescription& object, const std::vector<MaterialDescription>& materials);
 
     const Stopwatch watch_;
     EnvironmentMap environment_;
     LightData lights_;
     SpectrumTablesData spectra_;
+    std::vector<MaterialData> material_data_;
     std::vector<MaterialView> materials_;
     std::vector<MeshData> meshes_;
     std::vector<MeshView> mesh_views_;
-    std::vector<std::unique_ptr<OpalBody>> opals_;
+    std::vector<std::shared_ptr<const OpalBody>> opals_;
+    std::vector<std::unique_ptr<GlassBody>> glasses_;
     std::vector<OpalView> bodies_;
     std::vector<int> priorities_;  ///< of the bodies, in the scene's order
     bool guided_;

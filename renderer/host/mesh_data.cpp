@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/host/mesh_data.h"
 
-#include <fmt/format.h>
-
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-#include <assimp/Importer.hpp>
 #include <cmath>
 
-#include "formats/error.h"
 #include "formats/units.h"
 
 namespace opal {
@@ -71,32 +65,6 @@ MeshData make_cylinder(double radius_mm, double height_mm, double bevel_mm) {
     profile.push_back({radius_mm, -height_mm, 0.0, -1.0});
     profile.push_back({0.0, -height_mm, 0.0, -1.0});
     return revolve(profile, segments);
-}
-
-MeshData load_mesh(const std::filesystem::path& path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) throw InputError(fmt::format("{}: no such mesh file", path.string()));
-    Assimp::Importer importer;
-    const aiScene* scene =
-        importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
-                                             aiProcess_PreTransformVertices | aiProcess_FindDegenerates);
-    if (!scene) throw InputError(fmt::format("{}: not a readable mesh: {}", path.string(), importer.GetErrorString()));
-    MeshData mesh;
-    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-        const aiMesh& part = *scene->mMeshes[m];
-        if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
-        const std::uint32_t base = static_cast<std::uint32_t>(mesh.positions.size());
-        for (unsigned v = 0; v < part.mNumVertices; ++v) {
-            const aiVector3D& p = part.mVertices[v];
-            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-                throw InputError(fmt::format("{}: vertex {} is not finite", path.string(), v));
-            mesh.positions.push_back({p.x, p.y, p.z});
-        }
-        for (unsigned f = 0; f < part.mNumFaces; ++f)
-            for (unsigned k = 0; k < 3; ++k) mesh.indices.push_back(base + part.mFaces[f].mIndices[k]);
-    }
-    if (mesh.indices.empty()) throw InputError(fmt::format("{}: holds no triangles", path.string()));
-    return mesh;
 }
 
 RigidTransform object_transform(const ObjectDescription& object) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 #include "formats/scene.h"
@@ -17,9 +16,17 @@ struct MeshData {
     std::vector<std::uint32_t> indices;
     int material = -1;
     int body = -1;
+    std::vector<BezierPatch> patches;  ///< world space: the surface itself; empty where the triangles are it
+    std::vector<std::uint32_t> patch_of_triangle;
+    std::vector<float> patch_parameters;                 ///< u, v per vertex
+    float patch_reach_mm = 0.0f, patch_slack_mm = 0.0f;  ///< see PatchMeshView
 
     MeshView view() const {
-        return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material, body};
+        return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material, body, patch_view()};
+    }
+    PatchMeshView patch_view() const {
+        return {patches.empty() ? nullptr : patches.data(), patch_of_triangle.data(), patch_parameters.data(), patch_reach_mm,
+                patch_slack_mm};
     }
 };
 
@@ -29,8 +36,6 @@ MeshData make_plane(double size_mm);
 MeshData make_sphere(double radius_mm);
 /// A solid of revolution about Z whose flat top lies at z = 0, rounded at its upper edge: something to stand a gem on.
 MeshData make_cylinder(double radius_mm, double height_mm, double bevel_mm);
-/// A file that Assimp reads (OBJ, PLY, STL, glTF), in mm. Throws InputError.
-MeshData load_mesh(const std::filesystem::path& path);
 
 /// Rotation about X, then Y, then Z, uniform scale, translation.
 RigidTransform object_transform(const ObjectDescription& object);

@@ -11,6 +11,7 @@
 #include "formats/units.h"
 #include "renderer/core/mosaic.h"
 #include "renderer/host/opal_surface.h"
+#include "renderer/host/patch_surface.h"
 #include "renderer/host/stacking.h"
 
 namespace opal {
@@ -77,21 +78,23 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     const OpalAsset asset = read_opal_asset(object.file, options, file_notices);
     const std::string file = object.file.string();
     for (const std::string& notice : file_notices) notices.push_back(file + ": " + notice);
-    if (!asset.grain_id)
-        throw InputError(file +
-                         ": holds sites alone, no grain_id; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]");
+    if (!asset.shape)
+        throw InputError(file + ": holds sites alone, no shape; build it with [output] grids = [\"shape\", \"sites\"]");
 
     OpalView& opal = view_;
     opal.diffraction = transport_model(settings.diffraction);
     opal.ewald_tolerance = float(settings.ewald_tolerance);
     opal.max_odds = float(settings.max_odds);
-    opal.world_from_object = object_transform(object);
+    if (object.exact && asset.bezier_patches.empty())
+        throw InputError(file + ": has no Bezier patches, which exact = true asks for; shapes of kind \"bezier\" have them");
+    if (object.exact)
+        patches_ = asset.bezier_patches;
+    else
+        surface_ = surface_from_level_set(*asset.shape, file);
 
-    surface_ = surface_from_level_set(*asset.shape, file);
-    transform_mesh(surface_, opal.world_from_object);
-
-    grains_ = std::make_unique<GrainGridData>(*asset.grain_id);
-    opal.grains = grains_->field();
+    grains_ = std::make_unique<GrainSource>(asset, settings.grains, file);
+    opal.grains = grains_->view();
+    opal.grain_size_mm = grains_->sizes_mm().data();
     shape_ = std::make_unique<FieldGridData>(*asset.shape);
     opal.shape = shape_->view();
     for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
@@ -105,6 +108,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.relative_index = optics_.relative_index.data();
     opal.surface_index = optics_.surface_index.data();
     opal.surface_disperses = optics_.surface_disperses;
+    opal.roughness = float(object.roughness);
     opal.num_pairs = choose_pairs(constants, opal.pairs, reciprocal_points_, notices);
     // Places beyond the last repeat it without its strength.
     for (int k = 0; k < max_tested_pairs && opal.num_pairs > 0; ++k)
@@ -115,10 +119,8 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.layer_nm = float(stacked_layer_nm(constants.sphere_diameter_nm));
     if (constants.mosaic_spread_deg > 0.0)
         opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
-    grain_size_mm_ = grain_sizes_mm(*asset.grain_id, orientations_.size());
-    opal.grain_size_mm = grain_size_mm_.data();
 
-    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(opal.world_from_object.scale), file);
+    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(float(object.scale)), file);
     medium_fields_->attach(opal.medium);
     const double sigma_a_scale = medium_fields_->constant(MediumField::sigma_a_scale);
     const double sigma_s_mie_per_mm = medium_fields_->constant(MediumField::sigma_s_mie);
@@ -133,6 +135,13 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.medium.sigma_s_mie_per_mm = sigma_s_mie_per_mm_.data();
     if (sigma_s_mie_per_mm > 0.0) mie_phase_ = make_phase_function(constants);
     opal.medium.mie_phase = mie_phase_.view();
+}
+
+std::vector<MeshData> OpalBody::surfaces(const RigidTransform& world_from_object) const {
+    if (!patches_.empty()) return surfaces_from_patches(patches_, world_from_object);
+    std::vector<MeshData> meshes = {surface_};
+    transform_mesh(meshes.back(), world_from_object);
+    return meshes;
 }
 
 }  // namespace opal

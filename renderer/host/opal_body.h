@@ -8,7 +8,7 @@
 #include "formats/scene.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/host/field_grid.h"
-#include "renderer/host/grain_grid.h"
+#include "renderer/host/grain_source.h"
 #include "renderer/host/medium_fields.h"
 #include "renderer/host/mesh_data.h"
 #include "renderer/host/phase_function.h"
@@ -21,29 +21,36 @@ struct OpticalTables {
     bool surface_disperses = false;
 };
 
-/// One opal of a scene in memory. Not movable: its view points inside.
+/// One opal in memory, wherever scenes have it. Not movable: its view points inside.
 class OpalBody {
   public:
-    /// Loads the object's file. Throws InputError. Notices for the user are appended to `notices`.
+    /// Loads the object's file; of where the object stands nothing is kept but its scale. Throws InputError. Notices for the user
+    /// are appended to `notices`.
     OpalBody(const ObjectDescription& object, const OpalDescription& settings, std::vector<std::string>& notices);
     OpalBody(const OpalBody&) = delete;
     OpalBody& operator=(const OpalBody&) = delete;
 
-    const OpalView& view() const { return view_; }
-    /// Hands over the surface in world space.
-    MeshData take_surface() { return std::move(surface_); }
+    /// As a body that stands there; the scale must be the object's.
+    OpalView placed(const RigidTransform& world_from_object) const {
+        OpalView view = view_;
+        view.world_from_object = world_from_object;
+        return view;
+    }
+    /// The surface in world space: one closed mesh, or one for each part of an exact surface.
+    std::vector<MeshData> surfaces(const RigidTransform& world_from_object) const;
 
     /// Reciprocal-lattice points inside the limiting sphere, the origin counted.
     int reciprocal_points() const { return reciprocal_points_; }
     std::size_t num_grains() const { return orientations_.size(); }
+    const GrainSource& grains() const { return *grains_; }
     /// The recipe that the file carries; empty for files made elsewhere.
     const std::string& recipe_toml() const { return recipe_toml_; }
 
   private:
-    MeshData surface_;
-    std::unique_ptr<GrainGridData> grains_;
+    MeshData surface_;                  ///< object space; not used where there are patches
+    std::vector<BezierPatch> patches_;  ///< of an exact surface
+    std::unique_ptr<GrainSource> grains_;
     std::vector<Quaternion> orientations_;
-    std::vector<float> grain_size_mm_;
     OpticalTables optics_;
     std::vector<float> sigma_a_per_mm_, sigma_s_mie_per_mm_;
     std::unique_ptr<FieldGridData> shape_;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <iterator>
+#include <vector>
+
 #include "formats/units.h"
 #include "renderer/host/environment_map.h"
 
@@ -27,17 +30,26 @@ float fade(double offset, double half_size, double edge) {
     return float(clamped * clamped * (3.0 - 2.0 * clamped));
 }
 
-float coverage(const SoftBox& box, Vec3 direction) {
-    const double azimuth = units::rad_from_deg(box.azimuth_deg), elevation = units::rad_from_deg(box.elevation_deg);
-    const Vec3 centre{float(std::cos(elevation) * std::cos(azimuth)), float(std::cos(elevation) * std::sin(azimuth)),
-                      float(std::sin(elevation))};
-    const Vec3 right = normalize(cross({0.0f, 0.0f, 1.0f}, centre));
-    const Vec3 up = cross(centre, right);
-    const double depth = double(dot(direction, centre));
+/// A soft box's axes, and its half sizes at unit distance.
+struct SoftBoxFrame {
+    explicit SoftBoxFrame(const SoftBox& box) {
+        const double azimuth = units::rad_from_deg(box.azimuth_deg), elevation = units::rad_from_deg(box.elevation_deg);
+        centre = {float(std::cos(elevation) * std::cos(azimuth)), float(std::cos(elevation) * std::sin(azimuth)),
+                  float(std::sin(elevation))};
+        right = normalize(cross({0.0f, 0.0f, 1.0f}, centre));
+        up = cross(centre, right);
+        half_width = std::tan(units::rad_from_deg(box.half_width_deg));
+        half_height = std::tan(units::rad_from_deg(box.half_height_deg));
+    }
+    Vec3 centre, right, up;
+    double half_width, half_height;
+};
+
+float coverage(const SoftBox& box, const SoftBoxFrame& frame, Vec3 direction) {
+    const double depth = double(dot(direction, frame.centre));
     if (depth <= 0.0) return 0.0f;
-    const double x = double(dot(direction, right)) / depth, y = double(dot(direction, up)) / depth;
-    return fade(x, std::tan(units::rad_from_deg(box.half_width_deg)), box.edge) *
-           fade(y, std::tan(units::rad_from_deg(box.half_height_deg)), box.edge);
+    const double x = double(dot(direction, frame.right)) / depth, y = double(dot(direction, frame.up)) / depth;
+    return fade(x, frame.half_width, box.edge) * fade(y, frame.half_height, box.edge);
 }
 
 }  // namespace
@@ -46,8 +58,10 @@ Rgb studio_radiance(Vec3 direction) {
     // A dim room, a little brighter towards the ceiling.
     const float surround = 0.025f + 0.03f * max_of(0.0f, direction.z);
     Rgb sum{surround, surround, surround * 1.04f};
-    for (const SoftBox& box : soft_boxes) {
-        const float covered = coverage(box, direction);
+    static const std::vector<SoftBoxFrame> frames(std::begin(soft_boxes), std::end(soft_boxes));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const SoftBox& box = soft_boxes[i];
+        const float covered = coverage(box, frames[i], direction);
         sum.r += covered * box.radiance.r;
         sum.g += covered * box.radiance.g;
         sum.b += covered * box.radiance.b;

@@ -75,7 +75,10 @@ std::array<float, 3> spectral_display_color(double wavelength_nm) {
 }
 
 Image draw_bragg_chart(const BraggChart& chart) {
-    Image image{left + plot_width + right, top + plot_height + bottom, {"R", "G", "B"}, {}, {}};
+    Image image;
+    image.width = left + plot_width + right;
+    image.height = top + plot_height + bottom;
+    image.channel_names = {"R", "G", "B"};
     image.pixels.assign(std::size_t(image.width) * image.height * 3, 1.0f);
     CrystalOptics crystal = chart.crystal;
     for (int x = 0; x < plot_width; ++x) {

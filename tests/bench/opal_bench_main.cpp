@@ -12,7 +12,9 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/opal_asset.h"
+#include "grains_bench.h"
 #include "media_bench.h"
+#include "media_checks_bench.h"
 #include "modeler_bench.h"
 
 namespace {
@@ -20,6 +22,8 @@ namespace {
 struct BenchArguments {
     std::string folder;
     bool quick = false;
+    std::string scenes = "examples/media_checks";
+    int samples = 16;
 };
 
 int run_modeler(const BenchArguments& arguments) {
@@ -53,6 +57,24 @@ int run_media(const std::filesystem::path& folder) {
     return 0;
 }
 
+int run_grains(const std::filesystem::path& folder, bool quick) {
+    opal::initialize_openvdb();
+    std::filesystem::create_directories(folder);
+    const std::vector<opal::GrainsBenchRow> rows = opal::bench_grains(quick);
+    opal::AtomicFile file(folder / "grains.csv");
+    std::ofstream csv(file.temporary_path());
+    csv << "weights,sites,method,voxels_across,ns_per_grain,bytes,build_s,crossings,missed,spurious,wrong_length,mean_error_um,"
+           "largest_error_um\n";
+    for (const opal::GrainsBenchRow& row : rows)
+        csv << fmt::format("{},{},{},{},{:.4g},{},{:.4g},{},{},{},{:.4g},{:.4g},{:.4g}\n", row.weights, row.sites, row.method,
+                           row.voxels_across, row.ns_per_grain, row.bytes, row.build_s, row.crossings, row.missed, row.spurious,
+                           row.wrong_length, row.mean_error_um, row.largest_error_um);
+    csv.close();
+    if (!csv) throw opal::SystemError(fmt::format("{}: writing failed", (folder / "grains.csv").string()));
+    file.commit();
+    return 0;
+}
+
 int run_bench(int argc, char** argv) {
     CLI::App app("Measures opal's programs: speed and memory as ratios within one run.", "opal-bench");
     app.require_subcommand(1);
@@ -64,6 +86,16 @@ int run_bench(int argc, char** argv) {
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
     color->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
+    CLI::App* const grains = app.add_subcommand("grains", "finding the grains along rays: speed, memory, errors (some minutes)");
+    grains->add_option("-o,--output", arguments.folder, "folder for grains.csv")->required()->type_name("DIR");
+    grains->add_flag("--quick", arguments.quick, "1,000 sites alone");
+    CLI::App* const checks = app.add_subcommand(
+        "media-checks", "examples/media_checks: speed and variance, to be run beside other renderers (some minutes)");
+    checks->add_option("-o,--output", arguments.folder, "folder for media_checks.csv and disc.exr")->required()->type_name("DIR");
+    checks->add_option("--scenes", arguments.scenes, "folder of the scenes")->type_name("DIR")->capture_default_str();
+    checks->add_option("--spp", arguments.samples, "samples per pixel of each of two renders")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
     CLI::App* const convergence =
         app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
     convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
@@ -79,11 +111,17 @@ int run_bench(int argc, char** argv) {
         opal::bench_color(arguments.folder);
         return 0;
     }
+    if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
         return 0;
     }
     if (media->parsed()) return run_media(arguments.folder);
+    if (checks->parsed()) {
+        opal::initialize_openvdb();
+        opal::bench_media_checks(arguments.scenes, arguments.folder, arguments.samples);
+        return 0;
+    }
     return run_modeler(arguments);
 }
 

@@ -137,7 +137,7 @@ TEST_F(Clients, SitesAloneAreRefusedByTheRendererAlone) {
         EXPECT_EQ(run_program(opal_model + command + sites).exit_code, 0) << command;
     std::ofstream(*folder_ / "scene.toml") << "[[object]]\nkind = \"opal\"\nfile = \"sites.vdb\"\n";
     expect_failure(opal_render + " " + (*folder_ / "scene.toml").string() + " -o " + (*folder_ / "out.exr").string(), 2,
-                   "sites.vdb: holds sites alone, no grain_id");
+                   "sites.vdb: holds sites alone, no shape");
 }
 
 TEST_F(Clients, SitesAloneTakeLittleMemoryAtAnyResolution) {

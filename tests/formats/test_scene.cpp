@@ -19,6 +19,14 @@ TEST(Scene, Defaults) {
     EXPECT_EQ(scene.render.max_bounces, 64);
     EXPECT_EQ(scene.opal.companions, 3);
     EXPECT_EQ(scene.environment.kind, EnvironmentKind::studio);
+    EXPECT_EQ(scene.opal.grains, GrainsKind::automatic);
+}
+
+TEST(Scene, GrainsByName) {
+    EXPECT_EQ(parse(minimal, {"opal.grains=cells"}).opal.grains, GrainsKind::cells);
+    EXPECT_EQ(parse(minimal, {"opal.grains=sphere-tracing"}).opal.grains, GrainsKind::sphere_tracing);
+    EXPECT_NE(scene_to_toml(parse(minimal, {"opal.grains=hyperboloid"})).find("grains = \"hyperboloid\""), std::string::npos);
+    EXPECT_INPUT_ERROR(parse(minimal, {"opal.grains=cell"}), "did you mean 'cells'?");
 }
 
 TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {
@@ -33,6 +41,45 @@ TEST(Scene, ResolvedTextReadsBackToTheSameText) {
                                          "material = \"stand\"\n[film]\naovs = [\"depth\", \"normal\"]\n");
     const std::string text = scene_to_toml(scene);
     EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
+}
+
+const std::string glass = "[[material]]\nname = \"m\"\nkind = \"dielectric\"\n";
+
+TEST(Scene, MaterialsOfEveryKindReadBack) {
+    const SceneDescription scene =
+        parse(glass +
+              "n = \"silica\"\nroughness = 0.2\nmedium = { absorber = \"pink-dye\", sigma_a_per_mm = 0.1, sigma_s_per_mm = 0.3, "
+              "asymmetry = 0.5, density_file = \"fog.vdb\", density_grid = \"d\", density_scale = 2.0 }\n"
+              "[[material]]\nname = \"ring\"\nkind = \"conductor\"\nmetal = \"rhodium\"\nroughness = 0.1\n"
+              "[[material]]\nname = \"stand\"\nkind = \"plastic\"\nalbedo = [0.1, 0.2, 0.3]\nn = 1.6\n"
+              "[[object]]\nkind = \"sphere\"\nmaterial = \"m\"\npriority = 3\n"
+              "[[object]]\nkind = \"mesh\"\nfile = \"ring.obj\"\nmaterial = \"ring\"\nsmooth_normals_deg = 40\n"
+              "[[object]]\nkind = \"opal\"\nfile = \"gem.vdb\"\nroughness = 0.05\nexact = true\n");
+    EXPECT_EQ(scene.materials[0].kind, MaterialKind::dielectric);
+    EXPECT_EQ(scene.materials[0].n.name(), "silica");
+    EXPECT_EQ(scene.materials[0].medium.density_file, std::filesystem::path("folder/fog.vdb"));
+    EXPECT_EQ(scene.materials[1].metal, "rhodium");
+    EXPECT_EQ(scene.materials[2].n.at(500.0), 1.6);
+    EXPECT_EQ(scene.objects[0].priority, 3);
+    EXPECT_EQ(scene.objects[1].smooth_normals_deg, 40.0);
+    EXPECT_TRUE(scene.objects[2].exact);
+    EXPECT_EQ(scene.objects[2].roughness, 0.05);
+    const std::string text = scene_to_toml(scene);
+    EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
+}
+
+TEST(Scene, ErrorsOfMaterials) {
+    EXPECT_INPUT_ERROR(parse(glass + "roughness = 0.0001\n" + minimal),
+                       "0.0001 is out of range; allowed: 0 (smooth) or 0.001 to 1");
+    EXPECT_INPUT_ERROR(parse(glass + "albedo = 0.5\n" + minimal), "unknown key 'material.0.albedo'");
+    EXPECT_INPUT_ERROR(parse(glass + "n = \"silika\"\n" + minimal), "did you mean 'silica'?");
+    EXPECT_INPUT_ERROR(parse(glass + "medium = { absorber = \"pink\" }\n" + minimal),
+                       "folder/s.toml:4:23: material.0.medium.absorber");
+    EXPECT_INPUT_ERROR(parse("[[material]]\nname = \"r\"\nkind = \"conductor\"\nmetal = \"rodium\"\n" + minimal),
+                       "did you mean 'rhodium'?");
+    EXPECT_INPUT_ERROR(parse(glass + "[[object]]\nkind = \"plane\"\nmaterial = \"m\"\n"), "a plane encloses nothing");
+    EXPECT_INPUT_ERROR(parse("[[material]]\nname = \"d\"\n[[object]]\nkind = \"sphere\"\nmaterial = \"d\"\npriority = 1\n"),
+                       "unknown key 'object.0.priority'");
 }
 
 TEST(Scene, LightsReadBack) {

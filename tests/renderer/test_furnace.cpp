@@ -58,6 +58,12 @@ TEST(Furnace, Diffraction) {
     expect_invisible(small, "", 256);
 }
 
+TEST(Furnace, DiffractionInVoxels) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 300.0;
+    expect_invisible(small, "[opal]\ngrains = \"voxels\"\n", 256);
+}
+
 TEST(Furnace, StrongDiffractionInAir) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 320.0;

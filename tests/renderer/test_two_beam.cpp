@@ -62,19 +62,13 @@ LaneOptics<N> optics_at(const CrystalParameters& crystal, const std::array<doubl
 /// One thick coherent block of (111) planes at normal incidence, s polarization, n_sphere in water.
 struct Slab {
     CrystalParameters crystal;
-    BeamBlock beams = {};  ///< the first is the one
+    BeamBlock beams;
     float block_nm;
 
     Slab(double n_sphere, double layers) : crystal{250.0, n_sphere, 1.333} {
         const double g = std::sqrt(3.0) / (std::sqrt(2.0) * crystal.sphere_diameter_nm);
         block_nm = float(layers / g);
-        for (int j = 0; j < beam_block_size; ++j) {
-            beams.cosine[j] = 1.0f;
-            beams.g_per_nm[j] = float(g);
-            beams.form[j] = float(sphere_form_factor(crystal.sphere_diameter_nm, g));
-            beams.block_nm[j] = block_nm;
-            beams.share[j] = 1.0f;
-        }
+        beams = single_beam(1.0f, float(g), float(sphere_form_factor(crystal.sphere_diameter_nm, g)), block_nm, false);
     }
     double reflectance(double wavelength_nm) const {
         float rate_per_mm[1][beam_block_size];

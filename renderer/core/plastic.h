@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "renderer/core/bsdf_sample.h"
+#include "renderer/core/fresnel.h"
+#include "renderer/core/microfacet.h"
+
+/// Plastic: a clear coat over a diffuse base.
+namespace opal {
+
+/// Fresnel reflectance of diffuse light that falls onto a body of relative index `eta`, weighted by the cosine: Walsh's closed
+/// form (Duntley 1942, "The optical properties of diffusing materials"), below 1 by reversing the light's way.
+OPAL_HD inline float mean_fresnel(float eta) {
+    if (eta < 1.0f) return 1.0f - square(eta) * (1.0f - mean_fresnel(1.0f / eta));
+    const double n = double(eta), n2 = n * n, n4 = n2 * n2;
+    // Nearer to 1 the terms cancel; the value there is below 3e-4.
+    if (n < 1.0005) return 0.0f;
+    return float(0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0)) +
+                 n2 * (n2 - 1.0) * (n2 - 1.0) / ((n2 + 1.0) * (n2 + 1.0) * (n2 + 1.0)) * log((n - 1.0) / (n + 1.0)) -
+                 2.0 * n * n2 * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0)) +
+                 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0) * (n4 - 1.0)) * log(n));
+}
+
+/// What a rough coat reflects by itself, over the square root of the cosine of the incoming light: entries at equal steps from 0
+/// to 1. Host: renderer/host/coat_albedo.h.
+inline constexpr int coat_albedo_samples = 33;
+
+/// Its surface at the wavelengths of a path. What the coat lets in is scattered by the base, turned back in part by the coat from
+/// below, scattered again, and so on; with E(v) the part of light along v that the coat reflects at once (Fresnel's F where it is
+/// smooth), summed up,
+///   f_diffuse = (1 - E(out)) (1 - E(in)) a / (pi eta^2 (1 - a B)),  1 - B = (1 - mean E) / eta^2,
+/// B the part that the coat reflects back down. With the coat's reflection a white base (a = 1) gives 1 in every direction.
+template <int N>
+struct Plastic {
+    float roughness = 0.0f;              ///< GGX alpha of the coat; below min_roughness: smooth
+    float eta[N];                        ///< index of the coat over the index before it
+    float albedo[N];                     ///< of the base
+    const float* coat_albedo = nullptr;  ///< E of a rough coat, coat_albedo_samples; null where it is smooth
+    float mean_coat_albedo = 0.0f;       ///< cosine-weighted mean of it
+    int count = N;
+
+    OPAL_HD bool smooth() const { return roughness < min_roughness; }
+
+    /// Directions in a frame whose z is the normal on the path's side; `out` is where the path comes from.
+    OPAL_HD BsdfValue<N> evaluate(Vec3 out, Vec3 in) const {
+        BsdfValue<N> value;
+        if (!(out.z > 0.0f) || !(in.z > 0.0f)) return value;
+        return evaluate(out, in, coat_chance(out));
+    }
+
+    template <class Random>
+    OPAL_HD BsdfSample<N> sample(Vec3 out, Random& random) const {
+        BsdfSample<N> sample;
+        const float chance = coat_chance(out);
+        sample.ratio = Lanes<N>::all(1.0f);
+        const bool coat = random.next() < chance;
+        const float u1 = random.next(), u2 = random.next();
+        if (coat && smooth()) {
+            float unused;
+            for (int i = 0; i < count; ++i) sample.weight.v[i] = fresnel_dielectric(min_of(1.0f, out.z), eta[i], unused) / chance;
+            sample.direction = {-out.x, -out.y, out.z};
+            return sample;
+        }
+        Vec3 in;
+        if (coat) {
+            const Vec3 half = Ggx{roughness}.sample_visible(out, u1, u2);
+            in = normalize(2.0f * dot(out, half) * half - out);
+        } else {
+            const float radius = sqrtf(u1), angle_rad = 2.0f * pi_f * u2;
+            in = normalize({radius * cosf(angle_rad), radius * sinf(angle_rad), sqrtf(max_of(1.0e-12f, 1.0f - u1))});
+        }
+        if (!(in.z > 0.0f)) return sample;
+        const BsdfValue<N> value = evaluate(out, in, chance);
+        if (!(value.pdf > 0.0f)) return sample;
+        for (int i = 0; i < count; ++i) sample.weight.v[i] = value.f_cosine.v[i] / value.pdf;
+        sample.direction = in;
+        sample.pdf = value.pdf;
+        return sample;
+    }
+
+  private:
+    OPAL_HD float reflectance(float cosine, int lane) const {
+        float unused;
+        return fresnel_dielectric(min_of(1.0f, cosine), eta[lane], unused);
+    }
+
+    /// E, see above.
+    OPAL_HD float coat_reflectance(float cosine, int lane) const {
+        if (smooth()) return reflectance(cosine, lane);
+        const float place = sqrtf(min_of(1.0f, cosine)) * float(coat_albedo_samples - 1);
+        const int i = min_of(int(place), coat_albedo_samples - 2);
+        return coat_albedo[i] + (place - float(i)) * (coat_albedo[i + 1] - coat_albedo[i]);
+    }
+
+    /// Probability of choosing the coat: its part of what is sent back, the mean over the lanes. As it is the same whichever lane
+    /// leads, so are the densities.
+    OPAL_HD float coat_chance(Vec3 out) const {
+        float coat = 0.0f, base = 0.0f;
+        for (int i = 0; i < count; ++i) {
+            const float f = coat_reflectance(out.z, i);
+            coat += f;
+            base += (1.0f - f) * albedo[i];
+        }
+        return coat + base > 0.0f ? coat / (coat + base) : 1.0f;
+    }
+
+    OPAL_HD BsdfValue<N> evaluate(Vec3 out, Vec3 in, float chance) const {
+        BsdfValue<N> value;
+        const float cosine_pdf = in.z / pi_f;
+        value.pdf = (1.0f - chance) * cosine_pdf;
+        const Vec3 half = normalize(out + in);
+        const float cosine = dot(out, half);
+        float coat = 0.0f;
+        if (!smooth()) {
+            const Ggx ggx{roughness};
+            coat = ggx.shadowing(out, in) * ggx.visible_density(out, half) / (4.0f * cosine);
+            value.pdf += chance * ggx.visible_density(out, half) / (4.0f * cosine);
+        }
+        for (int i = 0; i < count; ++i) {
+            const float mean = smooth() ? mean_fresnel(eta[i]) : mean_coat_albedo;
+            const float below = 1.0f - (1.0f - mean) / square(eta[i]);
+            const float base = (1.0f - coat_reflectance(out.z, i)) * (1.0f - coat_reflectance(in.z, i)) * albedo[i] /
+                               (square(eta[i]) * (1.0f - albedo[i] * below));
+            value.f_cosine.v[i] = base * cosine_pdf + (smooth() ? 0.0f : coat * reflectance(cosine, i));
+        }
+        return value;
+    }
+};
+
+}  // namespace opal

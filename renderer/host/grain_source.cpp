@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/host/grain_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "formats/error.h"
+#include "formats/recipe_names.h"
+
+namespace opal {
+namespace {
+
+/// Why the sites of a file are no cells to be walked; empty where they are.
+std::string obstacle_to_cells(const OpalAsset& asset) {
+    if (asset.sites.empty()) return "the file holds no sites";
+    if (std::none_of(asset.sites.begin(), asset.sites.end(), [](const Site& site) { return site.grain > 0; }))
+        return "no site of the file owns anything";
+    if (asset.tessellation != TessellationKind::additive && asset.tessellation != TessellationKind::voronoi)
+        return fmt::format("the cells of a {} tessellation are of another kind",
+                           recipe_names::name(recipe_names::tessellations, asset.tessellation));
+    if (asset.boundary_noise.amplitude_mm > 0.0) return "boundary noise displaces the boundaries of the cells";
+    return "";
+}
+
+GrainMethod method_of(GrainsKind kind) {
+    switch (kind) {
+        case GrainsKind::voxels:
+            return GrainMethod::voxels;
+        case GrainsKind::sphere_tracing:
+            return GrainMethod::sphere_tracing;
+        case GrainsKind::hyperboloid:
+            return GrainMethod::hyperboloid;
+        default:
+            return GrainMethod::cells;
+    }
+}
+
+constexpr const char* method_names[] = {"voxels", "cells", "sphere-tracing", "hyperboloid"};
+
+GrainMethod choose_method(const OpalAsset& asset, GrainsKind asked, const std::string& file) {
+    const std::string obstacle = obstacle_to_cells(asset);
+    const bool automatic = asked == GrainsKind::automatic;
+    const GrainMethod method = automatic && !obstacle.empty() ? GrainMethod::voxels : method_of(asked);
+    if (method != GrainMethod::voxels && !obstacle.empty())
+        throw InputError(fmt::format("{}: opal.grains = \"{}\": {}; allowed here: auto, voxels", file,
+                                     method_names[static_cast<std::size_t>(method)], obstacle));
+    if (method == GrainMethod::voxels && !asset.grain_id)
+        throw InputError(
+            fmt::format("{}: holds no grain_id{}; build it with [output] grids = [\"grain_id\", \"shape\", \"sites\"]", file,
+                        automatic ? ", and cells cannot take its place: " + obstacle : ", which opal.grains = \"voxels\" needs"));
+    return method;
+}
+
+openvdb::BBoxd bounds_mm(const openvdb::FloatGrid& shape) {
+    const openvdb::CoordBBox voxels = shape.evalActiveVoxelBoundingBox();
+    openvdb::BBoxd bounds(shape.indexToWorld(voxels.min()), shape.indexToWorld(voxels.max()));
+    bounds.expand(shape.voxelSize().x());
+    return bounds;
+}
+
+}  // namespace
+
+GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file)
+    : method_(choose_method(asset, asked, file)) {
+    if (method_ == GrainMethod::voxels)
+        voxels_ = std::make_unique<GrainGridData>(*asset.grain_id);
+    else
+        cells_ = std::make_unique<CellData>(asset.sites, bounds_mm(*asset.shape));
+    sizes_mm_ = asset.grain_id ? grain_sizes_mm(*asset.grain_id, asset.num_grains())
+                               : grain_sizes_mm(cells_->field(), *asset.shape, asset.num_grains());
+}
+
+GrainsView GrainSource::view() const {
+    GrainsView view;
+    view.method = method_;
+    if (voxels_) view.voxels = voxels_->field();
+    if (cells_) view.cells = cells_->field();
+    return view;
+}
+
+const char* GrainSource::method_name() const {
+    return method_names[static_cast<std::size_t>(method_)];
+}
+
+std::size_t GrainSource::size_bytes() const {
+    return voxels_ ? voxels_->size_bytes() : cells_->size_bytes();
+}
+
+}  // namespace opal

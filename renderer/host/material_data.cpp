@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/host/material_data.h"
+
+#include "formats/metals.h"
+#include "formats/units.h"
+#include "renderer/host/upsampler.h"
+
+namespace opal {
+
+MaterialData::MaterialData(const MaterialDescription& material, UpsamplingMethod upsampling, Dispersion dispersion)
+    : roughness_(float(material.roughness)) {
+    if (material.kind == MaterialKind::diffuse || material.kind == MaterialKind::plastic)
+        albedo_ =
+            upsample_reflectance(upsampling, {float(material.albedo[0]), float(material.albedo[1]), float(material.albedo[2])});
+    if (material.kind == MaterialKind::conductor) {
+        model_ = MaterialModel::conductor;
+        const MetalIndex metal = MetalIndex::from_name(material.metal);
+        for (int i = 0; i < spectrum_samples; ++i) {
+            const ComplexIndex index = metal.at(units::wavelength_min_nm + i);
+            index_.push_back(float(index.n));
+            extinction_.push_back(float(index.k));
+        }
+    }
+    if (material.kind == MaterialKind::plastic) {
+        model_ = MaterialModel::plastic;
+        for (int i = 0; i < spectrum_samples; ++i)
+            index_.push_back(float(material.n.at(dispersion == Dispersion::full ? units::wavelength_min_nm + i : sodium_d_nm)));
+        if (roughness_ >= min_roughness) coat_ = make_coat_albedo(roughness_, float(material.n.at(sodium_d_nm)));
+    }
+}
+
+MaterialView MaterialData::view() const {
+    MaterialView view;
+    view.model = model_;
+    view.albedo = albedo_;
+    view.roughness = roughness_;
+    view.index = index_.data();
+    view.extinction = extinction_.data();
+    view.coat_albedo = coat_.value.data();
+    view.mean_coat_albedo = coat_.mean;
+    return view;
+}
+
+}  // namespace opal

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/host/patch_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace opal {
+namespace {
+
+/// Of the body's size: how far triangles may be off, which is where their outline may show.
+constexpr double chord_part = 1.0e-4;
+
+/// Control points are mapped as points are: an affine map of a patch is the patch of the mapped points.
+BezierPatch mapped(const BezierPatch& patch, const RigidTransform& transform) {
+    const Quaternion q = transform.rotation;
+    const double x = double(q.x), y = double(q.y), z = double(q.z), w = double(q.w), s = double(transform.scale);
+    const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                                 {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                                 {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    const double origin[3] = {double(transform.origin.x), double(transform.origin.y), double(transform.origin.z)};
+    BezierPatch result = patch;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            for (int axis = 0; axis < 3; ++axis) {
+                double sum = origin[axis];
+                for (int k = 0; k < 3; ++k) sum += s * matrix[axis][k] * patch.control_mm[i][j][k];
+                result.control_mm[i][j][axis] = sum;
+            }
+    return result;
+}
+
+/// Bound of the second derivatives, by second differences of the control points (Filip, Magedson & Markot 1986).
+double curvature_bound_mm(const BezierPatch& patch) {
+    double largest = 0.0;
+    const auto second = [&](int i0, int j0, int i1, int j1, int i2, int j2) {
+        double square = 0.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double d =
+                patch.control_mm[i0][j0][axis] - 2.0 * patch.control_mm[i1][j1][axis] + patch.control_mm[i2][j2][axis];
+            square += d * d;
+        }
+        largest = std::max(largest, 6.0 * std::sqrt(square));
+    };
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 2; ++j) {
+            second(i, j, i, j + 1, i, j + 2);
+            second(j, i, j + 1, i, j + 2, i);
+        }
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            double square = 0.0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double d = patch.control_mm[i + 1][j + 1][axis] - patch.control_mm[i + 1][j][axis] -
+                                 patch.control_mm[i][j + 1][axis] + patch.control_mm[i][j][axis];
+                square += d * d;
+            }
+            largest = std::max(largest, 9.0 * std::sqrt(square));
+        }
+    return largest;
+}
+
+double size_mm(const std::vector<BezierPatch>& patches) {
+    double low[3] = {1.0e300, 1.0e300, 1.0e300}, high[3] = {-1.0e300, -1.0e300, -1.0e300};
+    for (const BezierPatch& patch : patches)
+        for (const auto& row : patch.control_mm)
+            for (const auto& point : row)
+                for (int axis = 0; axis < 3; ++axis) {
+                    low[axis] = std::min(low[axis], point[axis]);
+                    high[axis] = std::max(high[axis], point[axis]);
+                }
+    return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+}
+
+/// All patches are divided alike, so that points on shared edges are equal bit by bit.
+void add_patch(const BezierPatch& patch, int parts, MeshData& mesh) {
+    const auto first = std::uint32_t(mesh.positions.size());
+    const auto number = std::uint32_t(mesh.patches.size());
+    mesh.patches.push_back(patch);
+    for (int i = 0; i <= parts; ++i)
+        for (int j = 0; j <= parts; ++j) {
+            // s and t are exchanged exactly when the edge is run the other way.
+            const double u = double(i) / parts, v = double(j) / parts;
+            const BernsteinWeights weight_u(double(parts - i) / parts, u), weight_v(double(parts - j) / parts, v);
+            double position[3];
+            bezier_sum(patch, weight_u.value, weight_v.value, position);
+            mesh.positions.push_back({float(position[0]), float(position[1]), float(position[2])});
+            mesh.patch_parameters.insert(mesh.patch_parameters.end(), {float(u), float(v)});
+        }
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        const auto same = [&](std::uint32_t p, std::uint32_t q) {
+            const Vec3 d = mesh.positions[p] - mesh.positions[q];
+            return dot(d, d) == 0.0f;
+        };
+        if (same(a, b) || same(b, c) || same(c, a)) return;
+        mesh.indices.insert(mesh.indices.end(), {a, b, c});
+        mesh.patch_of_triangle.push_back(number);
+    };
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+            const auto a = first + std::uint32_t(i * (parts + 1) + j), b = a + std::uint32_t(parts) + 1;
+            add(a, b, a + 1);
+            add(a + 1, b, b + 1);
+        }
+}
+
+}  // namespace
+
+std::vector<MeshData> surfaces_from_patches(const std::vector<BezierPatch>& patches, const RigidTransform& world_from_object) {
+    std::vector<BezierPatch> world;
+    double bound_mm = 0.0;
+    for (const BezierPatch& patch : patches) {
+        world.push_back(mapped(patch, world_from_object));
+        bound_mm = std::max(bound_mm, curvature_bound_mm(world.back()));
+    }
+    // Largest distance of a split into n by n: (M_uu + 2 M_uv + M_vv) / (8 n^2).
+    const double tolerance_mm = chord_part * size_mm(world);
+    const int parts = std::clamp(int(std::ceil(std::sqrt(bound_mm / (2.0 * tolerance_mm)))), 4, 256);
+    std::map<int, MeshData> by_part;
+    for (const BezierPatch& patch : world) add_patch(patch, parts, by_part[patch.part]);
+    std::vector<MeshData> meshes;
+    for (auto& [part, mesh] : by_part) {
+        // A ray that nearly touches slides along the surface while it is closer than the tolerance.
+        mesh.patch_reach_mm = float(4.0 * std::sqrt(tolerance_mm * size_mm(world)));
+        mesh.patch_slack_mm = float(2.0 * tolerance_mm);
+        meshes.push_back(std::move(mesh));
+    }
+    return meshes;
+}
+
+}  // namespace opal
