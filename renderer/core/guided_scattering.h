@@ -29,11 +29,13 @@ OPAL_HD inline Vec3 guided_scatter_direction(const MediumView& view, const Light
                                              const PathWavelengths<N>& wavelengths, const LaneMedium<N>& local, Vec3 direction,
                                              LaneWeights<N>& weights, PathRandom& random) {
     const float choice = random.next(), u1 = random.next(), u2 = random.next();
+    const GuidedDirections directions(guide, position_mm, direction);
+    const float share = directions.known() ? guide_share : 0.0f;
     Vec3 turned;
-    if (choice < guide_share) {
-        turned = sample_guide(guide, position_mm, u1, u2);
+    if (choice < share) {
+        turned = directions.sample(u1, u2);
     } else {
-        const bool rayleigh = (choice - guide_share) / (1.0f - guide_share) * local.sigma_s(0) < local.sigma_rayleigh.v[0];
+        const bool rayleigh = (choice - share) / (1.0f - share) * local.sigma_s(0) < local.sigma_rayleigh.v[0];
         const PhaseFunctionView& phase = view.mie_phase;
         const float cosine =
             rayleigh ? sample_rayleigh_cosine(u1)
@@ -41,11 +43,11 @@ OPAL_HD inline Vec3 guided_scatter_direction(const MediumView& view, const Light
         turned = deflect(direction, cosine, u2);
     }
     const float cosine = max_of(-1.0f, min_of(1.0f, dot(direction, turned)));
-    const float guided = guide_share * guide_pdf(guide, position_mm, turned);
+    const float guided = share > 0.0f ? share * directions.pdf(turned) : 0.0f;
     float hero_density = 1.0f;
     for (int i = 0; i < weights.count; ++i) {
         const float phase = phase_mixture(view, local, i, cosine, wavelengths.wavelength_nm[i]);
-        const float density = (1.0f - guide_share) * phase + guided;
+        const float density = (1.0f - share) * phase + guided;
         weights.throughput.v[i] *= phase / density;
         if (i == 0)
             hero_density = local.sigma_s(0) * density;

@@ -101,9 +101,9 @@ OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wave
                             InteriorEvent& event) {
     ++counters.scatterings;
     event.kind = InteriorEventKind::scattering;
-    event.direction = opal.guide.cdf ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
-                                                                event.direction, weights, random)
-                                     : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
+    event.direction = opal.guide.weight ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
+                                                                   event.direction, weights, random)
+                                        : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
     visit.renew();
 }
 

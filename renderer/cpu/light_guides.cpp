@@ -11,7 +11,7 @@
 namespace opal {
 namespace {
 
-constexpr std::uint32_t photons = 1u << 17;
+constexpr std::uint32_t photons = 1u << 16;
 constexpr int cells_across = 8;  ///< along the longest side of a body
 /// Photons are added in integers of this fraction of a mean photon's flight through a cell.
 constexpr float resolution = 0x1p-16f;
@@ -20,6 +20,19 @@ constexpr float largest_deposit = 0x1p12f;
 bool scatters(const MediumView& medium) {
     return medium.sigma_s_rayleigh_400nm_per_mm > 0.0f ||
            std::any_of(medium.sigma_s_mie_per_mm, medium.sigma_s_mie_per_mm + spectrum_samples, [](float s) { return s > 0.0f; });
+}
+
+/// The phase functions' mixture where the medium does not vary, in the middle of the spectrum: guiding needs no more. Kept from
+/// 0, so that light from any side can be drawn.
+void set_phase(const MediumView& medium, LightGuideView& guide) {
+    constexpr float wavelength_nm = 550.0f;
+    PathWavelengths<1> wavelengths;
+    wavelengths.wavelength_nm[0] = wavelength_nm;
+    const LaneMedium<1> lanes = lane_medium(medium, wavelengths);
+    for (int node = 0; node < guide_phase_nodes; ++node) {
+        const float cosine = -1.0f + 2.0f * (float(node) + 0.5f) / float(guide_phase_nodes);
+        guide.phase[node] = max_of(1.0e-4f, phase_mixture(medium, lanes, 0, cosine, wavelength_nm));
+    }
 }
 
 /// What photons leave behind in one body.
@@ -57,22 +70,17 @@ class PhotonCounts {
         }
     }
 
-    /// Cumulative tables of the cells; one that no light reaches draws evenly.
-    std::vector<float> cumulative() const {
-        std::vector<float> cdf;
-        cdf.reserve(counts_.size() / guide_bins * (guide_bins + 1));
+    /// Shares of the bins in each cell; all 0 in one that no light reaches.
+    std::vector<float> shares() const {
+        std::vector<float> result;
+        result.reserve(counts_.size());
         for (std::size_t cell = 0; cell < counts_.size(); cell += guide_bins) {
             double total = 0.0;
             for (std::size_t bin = 0; bin < guide_bins; ++bin) total += double(counts_[cell + bin]);
-            double sum = 0.0;
-            cdf.push_back(0.0f);
-            for (std::size_t bin = 0; bin < guide_bins; ++bin) {
-                sum += total > 0.0 ? double(counts_[cell + bin]) / total : 1.0 / guide_bins;
-                cdf.push_back(float(sum));
-            }
-            cdf.back() = 1.0f;
+            for (std::size_t bin = 0; bin < guide_bins; ++bin)
+                result.push_back(total > 0.0 ? float(double(counts_[cell + bin]) / total) : 0.0f);
         }
-        return cdf;
+        return result;
     }
 
   private:
@@ -100,8 +108,9 @@ LightGuides::LightGuides(const HostScene& scene, const EmbreeScene& intersector)
                              counts.add(from, direction, length_mm, power / mean_power);
                          });
         });
-        cdf_.push_back(counts.cumulative());
-        guide.cdf = cdf_.back().data();
+        weights_.push_back(counts.shares());
+        guide.weight = weights_.back().data();
+        set_phase(body.medium, guide);
         bodies_[mesh.body].guide = guide;
     }
     if (!bodies_.empty()) view_.bodies = bodies_.data();

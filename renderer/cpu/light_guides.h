@@ -22,7 +22,7 @@ class LightGuides {
 
   private:
     std::vector<OpalView> bodies_;
-    std::vector<std::vector<float>> cdf_;  ///< of the bodies that have one
+    std::vector<std::vector<float>> weights_;  ///< of the bodies that have one
     SceneView view_;
 };
 

@@ -73,36 +73,41 @@ struct ErrorRow {
     double luminance = 0.0, luminance_se = 0.0, chroma = 0.0, chroma_se = 0.0;
 };
 
-/// Mean square errors over mean square luminance. Estimates have no bias, so that their variance between seeds is their mean
-/// square error; the standard errors are those of sums over 16 groups of pixels.
-ErrorRow error_row(const std::vector<PixelSums>& pixels) {
+/// Mean over the pixels of the mean square error over (squared luminance + 1 % of its mean over the pixels). Estimates have no
+/// bias, so that their variance between seeds is their mean square error; the standard errors are those of means of 16 groups of
+/// pixels. `luminance`: of the pixels, from all renders together.
+ErrorRow error_row(const std::vector<PixelSums>& pixels, const std::vector<double>& luminance) {
     constexpr std::size_t groups = 16;
-    std::array<std::array<double, 3>, groups> group = {};  // luminance, chroma, mean square luminance
+    double mean_square = 0.0;
+    for (const double y : luminance) mean_square += y * y / double(luminance.size());
+    std::array<std::array<double, 2>, groups> group = {};
     for (std::size_t p = 0; p < pixels.size(); ++p) {
         std::array<double, 3> variance;
         for (std::size_t k = 0; k < 3; ++k)
             variance[k] = (pixels[p].square[k] - pixels[p].sum[k] * pixels[p].sum[k] / num_seeds) / (num_seeds - 1);
-        std::array<double, 3>& sums = group[p * groups / pixels.size()];
-        sums[0] += variance[0];
-        sums[1] += variance[1] + variance[2];
-        const double mean = pixels[p].sum[0] / num_seeds;
-        sums[2] += mean * mean - variance[0] / num_seeds;
+        const double weight = 1.0 / ((luminance[p] * luminance[p] + 0.01 * mean_square) * double(pixels.size()));
+        group[p * groups / pixels.size()][0] += weight * variance[0];
+        group[p * groups / pixels.size()][1] += weight * (variance[1] + variance[2]);
     }
-    ErrorRow row;
-    std::array<double, 3> total = {};
+    std::array<double, 2> total = {}, error = {};
     for (const auto& sums : group)
-        for (std::size_t k = 0; k < 3; ++k) total[k] += sums[k];
-    row.luminance = total[0] / total[2];
-    row.chroma = total[1] / total[2];
-    const auto standard_error = [&](std::size_t k) {
-        double squares = 0.0;
-        for (const auto& sums : group) squares += std::pow(sums[k] - total[k] / groups, 2.0);
-        return std::sqrt(squares * groups / (groups - 1)) / total[2];
-    };
-    row.luminance_se = standard_error(0);
-    row.chroma_se = standard_error(1);
+        for (std::size_t k = 0; k < 2; ++k) total[k] += sums[k];
+    for (const auto& sums : group)
+        for (std::size_t k = 0; k < 2; ++k) error[k] += std::pow(sums[k] - total[k] / groups, 2.0) * groups / (groups - 1.0);
+    ErrorRow row;
+    row.luminance = total[0];
+    row.luminance_se = std::sqrt(error[0]);
+    row.chroma = total[1];
+    row.chroma_se = std::sqrt(error[1]);
     return row;
 }
+
+/// One setting's renders of a scene, after 4, 8, 16 ... samples.
+struct Measured {
+    std::vector<std::vector<PixelSums>> pixels;
+    std::vector<int> samples;
+    std::vector<double> seconds;
+};
 
 /// The pixels whose centre shows a transparent body.
 std::vector<std::uint32_t> gem_pixels(const SceneView& view, const EmbreeScene& intersector) {
@@ -118,8 +123,8 @@ std::vector<std::uint32_t> gem_pixels(const SceneView& view, const EmbreeScene& 
     return pixels;
 }
 
-std::vector<ErrorRow> measure(const std::filesystem::path& scene_file, const std::filesystem::path& opal, const Setting& setting,
-                              int width, int samples) {
+Measured measure(const std::filesystem::path& scene_file, const std::filesystem::path& opal, const Setting& setting, int width,
+                 int samples) {
     const SceneDescription description = read_scene(
         scene_file, {"object.0.file='" + opal.string() + "'", fmt::format("render.width={}", width),
                      fmt::format("render.height={}", width * 3 / 4), "render.sampler=" + setting.sampler,
@@ -132,7 +137,7 @@ std::vector<ErrorRow> measure(const std::filesystem::path& scene_file, const std
     const std::vector<std::uint32_t> pixels = gem_pixels(host.view(), intersector);
     const Tracer trace = tracer_for(setting.companions);
     std::vector<std::array<Opponent, num_seeds>> sums(pixels.size());
-    std::vector<ErrorRow> rows;
+    Measured measured;
     int done = 0;
     for (int end = 4; end <= samples; end *= 2) {
         tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t p) {
@@ -154,11 +159,29 @@ std::vector<ErrorRow> measure(const std::filesystem::path& scene_file, const std
                     moments[p].sum[k] += mean;
                     moments[p].square[k] += mean * mean;
                 }
-        rows.push_back(error_row(moments));
-        rows.back().samples = done;
-        rows.back().seconds = watch.seconds() / num_seeds;
+        measured.pixels.push_back(std::move(moments));
+        measured.samples.push_back(done);
+        measured.seconds.push_back(watch.seconds() / num_seeds);
     }
-    return rows;
+    return measured;
+}
+
+/// The curve of errors of every setting.
+std::vector<std::vector<ErrorRow>> error_curves(const std::vector<Measured>& all) {
+    std::vector<double> luminance(all.front().pixels.front().size(), 0.0);
+    for (const Measured& measured : all)
+        for (std::size_t p = 0; p < luminance.size(); ++p)
+            luminance[p] += measured.pixels.back()[p].sum[0] / double(num_seeds * all.size());
+    std::vector<std::vector<ErrorRow>> curves;
+    for (const Measured& measured : all) {
+        curves.emplace_back();
+        for (std::size_t i = 0; i < measured.pixels.size(); ++i) {
+            curves.back().push_back(error_row(measured.pixels[i], luminance));
+            curves.back().back().samples = measured.samples[i];
+            curves.back().back().seconds = measured.seconds[i];
+        }
+    }
+    return curves;
 }
 
 /// Where a curve of errors over some cost comes down to `error`: between its points, and beyond them by the last two, in
@@ -190,23 +213,24 @@ void bench_convergence(const std::filesystem::path& folder, bool quick) {
         const std::filesystem::path example = std::filesystem::path(OPAL_EXAMPLES) / scene;
         const std::filesystem::path opal = std::filesystem::absolute(folder) / (scene + ".vdb");
         build_opal(example / "recipe.toml", opal);
-        std::vector<ErrorRow> reference;
-        for (const Setting& setting : settings) {
-            const std::vector<ErrorRow> rows = measure(example / "scene.toml", opal, setting, width, samples);
-            for (const ErrorRow& row : rows)
-                curves << fmt::format("{},\"{}\",{},{:.4g},{:.4g},{:.2g},{:.4g},{:.2g}\n", scene, setting.name, row.samples,
+        std::vector<Measured> measured;
+        for (const Setting& setting : settings)
+            measured.push_back(measure(example / "scene.toml", opal, setting, width, samples));
+        const std::vector<std::vector<ErrorRow>> errors = error_curves(measured);
+        const ErrorRow& last = errors.front().back();
+        for (std::size_t i = 0; i < settings.size(); ++i) {
+            for (const ErrorRow& row : errors[i])
+                curves << fmt::format("{},\"{}\",{},{:.4g},{:.4g},{:.2g},{:.4g},{:.2g}\n", scene, settings[i].name, row.samples,
                                       row.seconds, row.luminance, row.luminance_se, row.chroma, row.chroma_se);
-            if (reference.empty()) reference = rows;
-            const ErrorRow& last = reference.back();
             const auto ratio = [&](const auto& error_of, const auto& cost_of) {
-                return cost_of(last) / cost_at_error(rows, error_of, cost_of, error_of(last));
+                return cost_of(last) / cost_at_error(errors[i], error_of, cost_of, error_of(last));
             };
             const auto luminance = [](const ErrorRow& row) { return row.luminance; };
             const auto chroma = [](const ErrorRow& row) { return row.chroma; };
             const auto cost_samples = [](const ErrorRow& row) { return double(row.samples); };
             const auto cost_seconds = [](const ErrorRow& row) { return row.seconds; };
             const std::string line =
-                fmt::format("{},\"{}\",{:.3g},{:.3g},{:.3g},{:.3g}", scene, setting.name, ratio(luminance, cost_samples),
+                fmt::format("{},\"{}\",{:.3g},{:.3g},{:.3g},{:.3g}", scene, settings[i].name, ratio(luminance, cost_samples),
                             ratio(chroma, cost_samples), ratio(luminance, cost_seconds), ratio(chroma, cost_seconds));
             ratios << line << '\n';
             fmt::print("{}\n", line);
