@@ -61,10 +61,6 @@ void read_illuminant(TomlSection& section, LightDescription& light) {
         light.temperature_k = section.number("temperature_k", light.temperature_k, NumberRange::between(led_min_k, led_max_k));
 }
 
-std::string vector_text(const std::array<double, 3>& v) {
-    return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
-}
-
 }  // namespace
 
 LightDescription read_light(TomlSection section) {

@@ -41,7 +41,7 @@ class HostScene {
     int reciprocal_points() const;
     /// Of all opals together.
     std::size_t num_grains() const;
-    const std::vector<std::unique_ptr<OpalBody>>& opals() const { return opals_; }
+    const std::vector<std::shared_ptr<const OpalBody>>& opals() const { return opals_; }
     /// Of the first opal; empty without one, and for files made elsewhere.
     const std::string& recipe_toml() const;
 
