@@ -22,6 +22,13 @@ std::array<double, 3> turned_about(const std::array<double, 3>& point, const std
     return {center[0] + c * x - s * y, center[1] + s * x + c * y, point[2]};
 }
 
+void turn_light(LightDescription& light, const std::array<double, 3>& center, double angle_deg) {
+    light.position_mm = turned_about(light.position_mm, center, angle_deg);
+    light.target_mm = turned_about(light.target_mm, center, angle_deg);
+    light.up = turned_about(light.up, {0.0, 0.0, 0.0}, angle_deg);
+    light.azimuth_deg += angle_deg;
+}
+
 bool on_turntable(const AnimationDescription& animation, const ObjectDescription& object) {
     const std::vector<std::string>& names = animation.turntable_objects;
     if (names.empty()) return object.kind == ObjectKind::opal;
@@ -78,7 +85,10 @@ SceneDescription scene_of_frame(const SceneDescription& scene, int frame) {
             // Rotations about X, then Y, then Z: one more turn about Z simply adds.
             object.rotate_deg[2] += turn_deg;
         }
-    still.environment.rotate_deg += animation.light_sweep_deg * (frame - 1);
+    const double sweep_deg = animation.light_sweep_deg * (frame - 1);
+    still.environment.rotate_deg += sweep_deg;
+    if (sweep_deg != 0.0)
+        for (LightDescription& light : still.lights) turn_light(light, animation.center_mm, sweep_deg);
     const double orbit_deg = animation.camera_orbit_deg * (frame - 1);
     if (orbit_deg != 0.0) {
         still.camera.position_mm = turned_about(scene.camera.position_mm, scene.camera.target_mm, orbit_deg);

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 
@@ -69,6 +71,20 @@ void AtomicFile::commit() {
     if (error) throw SystemError(fmt::format("{}: cannot be put in place: {}", path_.string(), error.message()));
     committed_ = true;
     sync_path(folder_of(path_), O_RDONLY | O_DIRECTORY);
+}
+
+void remove_abandoned_temporaries(const std::filesystem::path& path) {
+    const std::string before = fmt::format(".{}.", path.stem().string()), after = ".tmp" + path.extension().string();
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_of(path), ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(before) || !name.ends_with(after) || name.size() <= before.size() + after.size()) continue;
+        pid_t process = 0;
+        const char* const end = name.data() + name.size() - after.size();
+        const auto [next, error] = std::from_chars(name.data() + before.size(), end, process);
+        if (error != std::errc() || next != end || process <= 0) continue;
+        if (::kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry.path(), ignored);
+    }
 }
 
 void write_text_file(const std::filesystem::path& path, const std::string& text) {

@@ -27,6 +27,9 @@ class AtomicFile {
     bool committed_ = false;
 };
 
+/// Removes what processes that no longer run left of a file that they were writing at `path` when they were killed.
+void remove_abandoned_temporaries(const std::filesystem::path& path);
+
 /// Throws InputError where no file could be created at `path`: asked before long work begins.
 void require_writable(const std::filesystem::path& path);
 

@@ -158,7 +158,7 @@ struct AnimationDescription {
     double turntable_deg = 0.0;                  ///< per frame, about the vertical axis through `center_mm`
     std::vector<std::string> turntable_objects;  ///< names; empty: every opal
     std::array<double, 3> center_mm = {0.0, 0.0, 0.0};
-    double light_sweep_deg = 0.0;   ///< per frame, of the environment
+    double light_sweep_deg = 0.0;   ///< per frame: the environment, and lights about `center_mm`
     double camera_orbit_deg = 0.0;  ///< per frame, about the vertical axis through the camera's target
 };
 

@@ -25,6 +25,7 @@ CheckpointKeeper::~CheckpointKeeper() {
 }
 
 void CheckpointKeeper::find_earlier(int samples) {
+    remove_abandoned_temporaries(path_);
     std::error_code error;
     const bool exists = std::filesystem::exists(path_, error);
     if (!options_.resume) {

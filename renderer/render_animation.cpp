@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "formats/animation.h"
@@ -26,6 +28,11 @@ RenderOptions options_of_frame(const RenderOptions& options, int frame) {
     std::error_code ignored;
     still.checkpoint.resume = options.checkpoint.resume && std::filesystem::exists(checkpoint_path(still.output), ignored);
     return still;
+}
+
+/// Tiles of a sheet that stays below some 16 million pixels.
+int tile_px(int count) {
+    return std::clamp(int(std::sqrt(1.6e7 / count)), 12, 240);
 }
 
 /// The picture of a frame that an earlier run has finished, as its PNG shows it.
@@ -57,7 +64,8 @@ void render_animation(const RenderOptions& options, const SceneDescription& scen
     std::filesystem::path sheet_path = options.output;
     sheet_path.replace_extension(".sheet.png");
     require_writable(sheet_path);
-    ContactSheet sheet(range.last - range.first + 1, window.width(), window.height());
+    const int count = range.last - range.first + 1;
+    ContactSheet sheet(count, window.width(), window.height(), tile_px(count));
     OpalCache opals;
     for (int frame = range.first; frame <= range.last; ++frame) {
         const RenderOptions frame_options = options_of_frame(options, frame);

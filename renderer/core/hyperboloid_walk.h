@@ -9,8 +9,9 @@ namespace opal {
 ///   (A^2 - 4 D^2) t^2 + 2 (A B - 4 D^2 b) t + B^2 - 4 D^2 c = 0,
 ///   A = 2 v.s, B = 2 u.s + |s|^2 - D^2, u = o - p_i, b = u.v, c = |u|^2, s = p_i - p_j, D = w_j - w_i,
 /// without the factored discriminant, whose digits cancel for weights that are nearly equal, and without the test that tells
-/// the boundary's sheet of the hyperboloid from the other. The nearest root more than `epsilon_mm` ahead counts as the boundary.
-/// Here to be compared: see CellWalk for what to use. Offers the same.
+/// the boundary's sheet of the hyperboloid from the other. The nearest root more than `epsilon_mm` ahead counts as a boundary;
+/// who is beyond is asked of the sites, epsilon_mm farther on, so that a root of the other sheet costs time alone, while one that
+/// is lost leaves the walk in a cell where it no longer is. Here to be compared: see CellWalk for what to use. Offers the same.
 class HyperboloidWalk {
   public:
     static constexpr float epsilon_mm = 1.0e-4f;
@@ -24,21 +25,20 @@ class HyperboloidWalk {
         while (true) {
             const int grain = field_.grain[cell_];
             if (grain != current) return grain;
-            int next = cell_;
-            const float exit_mm = find_exit(distance + epsilon_mm, next);
+            const float exit_mm = find_exit(distance + epsilon_mm);
             if (!(exit_mm < end)) {
                 distance = end;
                 return 0;
             }
             distance = exit_mm;
-            cell_ = next;
+            cell_ = locate_cell(field_, origin_ + (distance + epsilon_mm) * direction_, cell_);
         }
     }
 
     OPAL_HD int cell() const { return cell_; }
 
   private:
-    OPAL_HD float find_exit(float after_mm, int& next) const {
+    OPAL_HD float find_exit(float after_mm) const {
         const CellSite site = field_.sites[cell_];
         const Vec3 u = origin_ - site.position();
         const float b = dot(u, direction_), c = dot(u, u);
@@ -54,10 +54,7 @@ class HyperboloidWalk {
             const float root = sqrtf(discriminant);
             const float roots_mm[2] = {(-qb - root) / (2.0f * qa), (-qb + root) / (2.0f * qa)};
             for (const float root_mm : roots_mm)
-                if (root_mm > after_mm && root_mm < exit_mm) {
-                    exit_mm = root_mm;
-                    next = field_.neighbors[k];
-                }
+                if (root_mm > after_mm) exit_mm = min_of(exit_mm, root_mm);
         }
         return exit_mm;
     }

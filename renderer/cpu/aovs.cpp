@@ -7,6 +7,7 @@
 #include <array>
 
 #include "formats/colorimetry.h"
+#include "renderer/core/conductor.h"
 #include "renderer/core/fresnel.h"
 #include "renderer/core/strongest_family.h"
 #include "renderer/host/upsampler.h"
@@ -44,12 +45,19 @@ const OpalView* opal_behind(const AovScene& scene, const FirstHit& first) {
     return body.orientations ? &body : nullptr;
 }
 
-/// Linear sRGB of a reflectance under the scene's illuminant, which counts as white.
-Rgb color_of_reflectance(const SpectrumTables& tables, const UpsampledColor& albedo) {
+/// What a material reflects: metals at normal incidence, plastic by its base.
+float reflectance_of(const SpectrumTables& tables, const MaterialView& material, float wavelength_nm) {
+    if (material.model == MaterialModel::conductor)
+        return fresnel_conductor(1.0f, table_at(material.index, wavelength_nm), table_at(material.extinction, wavelength_nm));
+    return upsampled(tables, material.albedo, wavelength_nm);
+}
+
+/// Linear sRGB of what a material reflects of the scene's illuminant, which counts as white.
+Rgb albedo_of(const SpectrumTables& tables, const MaterialView& material) {
     Xyz lit = {0.0, 0.0, 0.0}, white = {0.0, 0.0, 0.0};
     for (int i = 0; i < spectrum_samples; ++i) {
         const double light = double(tables.white[i]);
-        const double reflected = light * double(upsampled(tables, albedo, spectrum_min_nm + float(i)));
+        const double reflected = light * double(reflectance_of(tables, material, spectrum_min_nm + float(i)));
         const Vec3 observer = tables.observer[i];
         lit = {lit.x + reflected * double(observer.x), lit.y + reflected * double(observer.y),
                lit.z + reflected * double(observer.z)};
@@ -95,8 +103,7 @@ void write_albedo(const AovScene& scene, const FirstHit&, int x, int y, float* t
         const FirstHit first = first_hit(scene, float(x) + (float(sample % across) + 0.5f) / across,
                                          float(y) + (float(sample / across) + 0.5f) / across);
         if (!first.found) continue;
-        const Rgb albedo =
-            first.surface.body >= 0 ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
+        const Rgb albedo = first.surface.body >= 0 ? Rgb{1.0f, 1.0f, 1.0f} : scene.albedos[std::size_t(first.surface.material)];
         target[0] += albedo.r / float(across * across);
         target[1] += albedo.g / float(across * across);
         target[2] += albedo.b / float(across * across);
@@ -169,8 +176,7 @@ std::vector<Rgb> material_albedos(const HostScene& scene) {
     for (const MeshData& mesh : scene.meshes()) {
         if (mesh.material < 0) continue;
         albedos.resize(std::max(albedos.size(), std::size_t(mesh.material) + 1));
-        albedos[std::size_t(mesh.material)] =
-            color_of_reflectance(scene.view().spectra, scene.view().materials[mesh.material].albedo);
+        albedos[std::size_t(mesh.material)] = albedo_of(scene.view().spectra, scene.view().materials[mesh.material]);
     }
     return albedos;
 }

@@ -21,8 +21,8 @@ namespace opal {
 ///    reciprocal vector that turns it; 0 0 0 for none. Of stacked crystals: hexagonal H, K and the order along the stacking
 ///    axis. hkl.wavelength_nm: mean wavelength of what it turns.
 /// Averaged over 16 places of each pixel:
-///  - albedo.R .G .B: linear sRGB of the reflectance of what is met, under the scene's illuminant; 1 for transparent bodies, 0
-///    for none
+///  - albedo.R .G .B: linear sRGB of the reflectance of what is met, under the scene's illuminant (metals at normal incidence,
+///    plastic by its base); 1 for transparent bodies, 0 for none
 /// sample_count and variance.R .G .B are in every picture; naming them adds nothing.
 void add_aovs(const HostScene& scene, const EmbreeScene& intersector, const std::vector<std::string>& aovs, Image& image);
 

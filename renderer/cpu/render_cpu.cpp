@@ -30,9 +30,10 @@ template <int N>
 void trace_block(const SceneView& view, const EmbreeScene& intersector, const PixelWindow& pixels, std::uint32_t end, Film& film,
                  FilmBlock& block) {
     const PixelWindow& window = film.window();
-    for (int y = pixels.y0; y < pixels.y1; ++y)
-        for (int x = pixels.x0; x < pixels.x1; ++x)
-            for (std::uint32_t sample = block.end_sample; sample < end; ++sample) {
+    // Sample by sample over the block: its totals are then added up in the same order however samples are cut into passes.
+    for (std::uint32_t sample = block.end_sample; sample < end; ++sample)
+        for (int y = pixels.y0; y < pixels.y1; ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x) {
                 // A path's random numbers belong to its pixel of the whole picture, so that a part of it shows the same.
                 const std::uint32_t pixel =
                     std::uint32_t(window.y0 + y) * std::uint32_t(view.width) + std::uint32_t(window.x0 + x);

@@ -23,18 +23,18 @@ constexpr double roundings = 16.0;
 
 }  // namespace
 
-CellData::CellData(const std::vector<Site>& sites, const openvdb::BBoxd& bounds_mm) {
+CellData::CellData(const std::vector<Site>& sites, ConvexBounds bounds) {
     std::vector<openvdb::Vec3d> places_mm;
     std::vector<const Site*> owners;
-    openvdb::BBoxd box_mm = bounds_mm;
     for (const Site& site : sites) {
         if (site.grain == 0) continue;
         places_mm.push_back(site.position_mm);
         owners.push_back(&site);
-        box_mm.expand(site.position_mm);
+        bounds.hold(site.position_mm);
     }
-    // Room for the rounding of sites and rays; faces of the box at a distance from every site.
-    box_mm.expand(1.0e-3 * box_mm.extents().length() + 1.0e-6);
+    // Room for the rounding of sites and rays; faces at a distance from every site.
+    bounds.widen(1.0e-3 * bounds.box_mm().extents().length() + 1.0e-6);
+    const openvdb::BBoxd box_mm = bounds.box_mm();
     for (const std::uint32_t n : z_order(places_mm)) {
         const Site& site = *owners[n];
         sites_.push_back({float(site.position_mm.x()), float(site.position_mm.y()), float(site.position_mm.z()), site.weight_mm});
@@ -44,17 +44,17 @@ CellData::CellData(const std::vector<Site>& sites, const openvdb::BBoxd& bounds_
     for (int axis = 0; axis < 3; ++axis)
         largest_mm = std::max({largest_mm, std::abs(box_mm.min()[axis]), std::abs(box_mm.max()[axis])});
     placement_.rounding_mm = float(roundings * 0x1p-24 * largest_mm);
-    keep_visible(box_mm);
-    find_neighbors(box_mm);
+    keep_visible(bounds);
+    find_neighbors(bounds);
     fill_start_grid(box_mm);
 }
 
-void CellData::keep_visible(const openvdb::BBoxd& box_mm) {
+void CellData::keep_visible(const ConvexBounds& bounds) {
     std::vector<char> hidden(sites_.size(), 0);
     {
         const SiteTree tree(sites_);
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites_.size(), sites_per_task), [&](const auto& range) {
-            CellNeighborSearch search(sites_, tree, box_mm);
+            CellNeighborSearch search(sites_, tree, bounds);
             for (std::size_t n = range.begin(); n < range.end(); ++n) hidden[n] = search.is_hidden(std::uint32_t(n)) ? 1 : 0;
         });
     }
@@ -68,11 +68,11 @@ void CellData::keep_visible(const openvdb::BBoxd& box_mm) {
     grain_.resize(kept);
 }
 
-void CellData::find_neighbors(const openvdb::BBoxd& box_mm) {
+void CellData::find_neighbors(const ConvexBounds& bounds) {
     const SiteTree tree(sites_);
     std::vector<std::vector<std::int32_t>> lists(sites_.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites_.size(), sites_per_task), [&](const auto& range) {
-        CellNeighborSearch search(sites_, tree, box_mm);
+        CellNeighborSearch search(sites_, tree, bounds);
         for (std::size_t n = range.begin(); n < range.end(); ++n) search.find(std::uint32_t(n), lists[n]);
     });
     first_.push_back(0);

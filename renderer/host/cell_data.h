@@ -8,6 +8,7 @@
 
 #include "formats/opal_asset.h"
 #include "renderer/core/cell_field.h"
+#include "renderer/host/convex_bounds.h"
 
 namespace opal {
 
@@ -15,17 +16,17 @@ namespace opal {
 /// boundary noise.
 class CellData {
   public:
-    /// `bounds_mm` (object space) encloses every place that rays will reach; sites may lie outside. Sites of grain 0 own nothing
+    /// `bounds` (object space) hold every place that rays will reach; sites may lie outside. Sites of grain 0 own nothing
     /// and are left out, as are others that turn out to be hidden. At least one site must have a grain. The result does not
     /// depend on the number of threads.
-    CellData(const std::vector<Site>& sites, const openvdb::BBoxd& bounds_mm);
+    CellData(const std::vector<Site>& sites, ConvexBounds bounds);
 
     CellField field() const;
     std::size_t size_bytes() const;
 
   private:
-    void keep_visible(const openvdb::BBoxd& box_mm);
-    void find_neighbors(const openvdb::BBoxd& box_mm);
+    void keep_visible(const ConvexBounds& bounds);
+    void find_neighbors(const ConvexBounds& bounds);
     void fill_start_grid(const openvdb::BBoxd& box_mm);
 
     std::vector<CellSite> sites_;

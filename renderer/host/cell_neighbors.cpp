@@ -71,8 +71,10 @@ openvdb::Vec3d place_of(const CellSite& site) {
 
 }  // namespace
 
-CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const openvdb::BBoxd& box_mm)
-    : sites_(sites), tree_(tree), box_mm_(box_mm) {
+CellNeighborSearch::CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const ConvexBounds& bounds)
+    : sites_(sites), tree_(tree), bounds_(bounds) {
+    const openvdb::Vec3d extents_mm = bounds.box_mm().extents();
+    near_mm_ = 4.0 * std::cbrt(extents_mm.x() * extents_mm.y() * extents_mm.z() / double(sites.size()));
     for (int patch = 0; patch < coarse_patches; ++patch) {
         const PatchGeometry& geometry = patch_table()[std::size_t(patch)];
         centre_x_[patch] = float(geometry.x);
@@ -121,11 +123,12 @@ void CellNeighborSearch::gather(std::uint32_t site) {
     std::fill(std::begin(lowest_), std::end(lowest_), 0.0f);
     std::fill(std::begin(best_), std::end(best_), 0.0f);
     std::fill(std::begin(winner_), std::end(winner_), 0.0f);
-    for (int face = 0; face < 6; ++face) {
-        const int axis = face / 2;
-        const double distance_mm = face % 2 == 0 ? box_mm_.max()[axis] - place[axis] : place[axis] - box_mm_.min()[axis];
-        const openvdb::Vec3d slope = direction_of(face, 0.0, 0.0) / distance_mm;
-        offer({slope, 0.0, 1.0 / distance_mm, -1});
+    // The first six bound every cell; others only shorten the search, and do so where they are near.
+    for (std::size_t n = 0; n < bounds_.planes().size(); ++n) {
+        const BoundingPlane& plane = bounds_.planes()[n];
+        const double distance_mm = plane.offset_mm - plane.normal.dot(place);
+        if (n >= 6 && distance_mm > near_mm_) continue;
+        offer({plane.normal / distance_mm, 0.0, 1.0 / distance_mm, -1});
     }
     double lowest = 0.0;
     // kappa_j <= 2 / (|g| - D), and |g| - D is at least the gap.
@@ -165,25 +168,22 @@ void CellNeighborSearch::mark_winners() {
 /// Drops the rivals that cannot win in a patch; divides it where others than known neighbours are left.
 void CellNeighborSearch::settle(const Patch& patch, bool finest) {
     const PatchGeometry geometry = patch_geometry(patch.face, patch.level, patch.u, patch.v);
-    const auto kappa = [&](const Rival& rival) {
-        return geometry.x * rival.slope.x() + geometry.y * rival.slope.y() + geometry.z * rival.slope.z() + rival.constant;
-    };
-    std::uint32_t winner = in_patch_[patch.first];
-    double best = kappa(rivals_[winner]);
-    for (std::uint32_t k = patch.first + 1; k < patch.last; ++k) {
-        const double value = kappa(rivals_[in_patch_[k]]);
-        if (value > best) {
-            best = value;
-            winner = in_patch_[k];
-        }
+    kappa_.clear();
+    std::size_t winner_at = 0;
+    for (std::uint32_t k = patch.first; k < patch.last; ++k) {
+        const Rival& rival = rivals_[in_patch_[k]];
+        kappa_.push_back(geometry.x * rival.slope.x() + geometry.y * rival.slope.y() + geometry.z * rival.slope.z() +
+                         rival.constant);
+        if (kappa_.back() > kappa_[winner_at]) winner_at = kappa_.size() - 1;
     }
+    const std::uint32_t winner = in_patch_[patch.first + winner_at];
+    const double best = kappa_[winner_at] * (1.0 - near_miss), reach2 = geometry.reach * geometry.reach;
     is_neighbor_[winner] = 1;
     const auto kept = std::uint32_t(in_finer_patch_.size());
     bool settled = true;
     for (std::uint32_t k = patch.first; k < patch.last; ++k) {
-        const Rival& rival = rivals_[in_patch_[k]];
-        const double behind = best * (1.0 - near_miss) - kappa(rival);
-        const double catches_up2 = geometry.reach * geometry.reach * (rival.slope - rivals_[winner].slope).lengthSqr();
+        const double behind = best - kappa_[k - patch.first];
+        const double catches_up2 = reach2 * (rivals_[in_patch_[k]].slope - rivals_[winner].slope).lengthSqr();
         if (behind > 0.0 && behind * behind > catches_up2) continue;
         in_finer_patch_.push_back(in_patch_[k]);
         if (finest) is_neighbor_[in_patch_[k]] = 1;

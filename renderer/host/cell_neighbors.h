@@ -6,15 +6,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/host/convex_bounds.h"
 #include "renderer/host/site_tree.h"
 
 namespace opal {
 
-/// Finds the neighbours of one cell after another of an additively weighted Voronoi diagram in a box.
+/// Finds the neighbours of one cell after another of an additively weighted Voronoi diagram within bounds.
 ///
 /// Seen from its site, a cell is star-shaped, and one over its radius in direction v is the largest of
 ///   kappa_j(v) = v.G_j + C_j,  G_j = 2 g / (|g|^2 - D^2),  C_j = 2 D / (|g|^2 - D^2),  g = p_j - p_i,  D = w_j - w_i
-/// over all other sites j (and over the faces of the box, which are planes: C = 0). j is a neighbour where its kappa is the
+/// over all other sites j (and over the faces of the bounds, which are planes: C = 0). j is a neighbour where its kappa is the
 /// largest in some direction. kappa is linear in v, hence |G_j|-Lipschitz on the sphere of directions, which is divided into
 /// patches until each patch is left with sites that are known to be neighbours: those that win at the centre of some patch. Sites
 /// beyond twice the largest radius found so far need no look: kappa_j <= 2 / (|g| - D).
@@ -28,8 +29,8 @@ class CellNeighborSearch {
     static constexpr int coarse_edge = 4;
     static constexpr int coarse_patches = 6 * coarse_edge * coarse_edge;
 
-    /// Keeps both by reference. All sites lie inside the box.
-    CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const openvdb::BBoxd& box_mm);
+    /// Keeps all by reference. All sites lie inside the bounds.
+    CellNeighborSearch(const std::vector<CellSite>& sites, const SiteTree& tree, const ConvexBounds& bounds);
 
     /// Whether another site is at least as near as `site` everywhere; of equal sites in one place the first is not hidden.
     bool is_hidden(std::uint32_t site);
@@ -38,7 +39,7 @@ class CellNeighborSearch {
     void find(std::uint32_t site, std::vector<std::int32_t>& neighbors);
 
   private:
-    /// Of another site, or (site < 0) of a face of the box.
+    /// Of another site, or (site < 0) of a face of the bounds.
     struct Rival {
         openvdb::Vec3d slope;  ///< G
         double constant;       ///< C
@@ -62,7 +63,8 @@ class CellNeighborSearch {
 
     const std::vector<CellSite>& sites_;
     const SiteTree& tree_;
-    openvdb::BBoxd box_mm_;
+    const ConvexBounds& bounds_;
+    double near_mm_;  ///< a few times the distance between sites
 
     // The coarse patches' centres and how far their corners are from them. Single precision is far below near misses.
     float centre_x_[coarse_patches], centre_y_[coarse_patches], centre_z_[coarse_patches], reach_[coarse_patches];
@@ -72,6 +74,7 @@ class CellNeighborSearch {
     std::vector<Rival> rivals_;
     std::vector<std::uint32_t> may_win_[coarse_patches];  ///< rivals, in each coarse patch
     std::vector<char> is_neighbor_;
+    std::vector<double> kappa_;
     std::vector<std::uint32_t> in_patch_, in_finer_patch_;
     std::vector<Patch> patches_, finer_patches_;
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@
 
 namespace opal {
 namespace {
+
+/// Along an object: more than memory holds of any field that is not empty.
+constexpr int most_voxels = 65536;
 
 openvdb::FloatGrid::Ptr read_density(const MediumDescription& medium) {
     const RawOpalFile raw = read_raw_opal_file(medium.density_file);
@@ -54,6 +58,10 @@ DensityField::DensityField(const MediumDescription& medium, const openvdb::BBoxd
     if (!(density->background() >= 0.0f && std::isfinite(density->background())))
         throw InputError(
             fmt::format("{}: grid {}: background {}; allowed: numbers from 0", file, density->getName(), density->background()));
+    const openvdb::Vec3d voxels = bounds_mm.extents() / density->voxelSize().x();
+    if (!(std::max({voxels.x(), voxels.y(), voxels.z()}) <= most_voxels))
+        throw InputError(fmt::format("{}: grid {}: {:.3g} voxels along the object's longest side; allowed: up to {}", file,
+                                     density->getName(), std::max({voxels.x(), voxels.y(), voxels.z()}), most_voxels));
     // Everything that a lookup in the body may read counts for the bounds, the background among it.
     const openvdb::CoordBBox read(openvdb::Coord::floor(density->worldToIndex(bounds_mm.min())).offsetBy(-1),
                                   openvdb::Coord::ceil(density->worldToIndex(bounds_mm.max())).offsetBy(1));

@@ -49,14 +49,15 @@ NoiseLevel block_noise(const Film& film, int block) {
             const double* const sums = film.sums(pixel).data();
             const double groups = double(film.samples(pixel) / noise_group);
             const std::array<double, 3> total = opponent(sums + sum_offset);
-            double variance[3];
+            double mean[3], variance[3];
             for (std::size_t c = 0; c < 3; ++c) {
-                const double mean = total[c] / double(film.samples(pixel));
-                variance[c] = std::max(0.0, sums[group_square_offset + int(c)] / groups - mean * mean) / (groups - 1.0);
+                mean[c] = total[c] / double(film.samples(pixel));
+                variance[c] = std::max(0.0, sums[group_square_offset + int(c)] / groups - mean[c] * mean[c]) / (groups - 1.0);
             }
-            const double scale = std::max(total[0] / double(film.samples(pixel)), film.noise_floor());
+            const double scale = std::max(mean[0], film.noise_floor());
             luminance += relative_square(variance[0], scale);
-            chroma += relative_square(0.5 * (variance[1] + variance[2]), scale);
+            const double chroma_scale = std::max({scale, std::abs(mean[1]), std::abs(mean[2])});
+            chroma += relative_square(0.5 * (variance[1] + variance[2]), chroma_scale);
         }
     const double pixels = double(window.width()) * double(window.height());
     return {std::sqrt(luminance / pixels), std::sqrt(chroma / pixels)};

@@ -6,10 +6,11 @@
 #include "renderer/host/film.h"
 
 /// How noisy a picture is, from what its film holds. A pixel's noise in luminance is the standard error of its mean luminance
-/// over that luminance, or over the picture's floor where it is darker; in chroma, the root mean square of the standard errors of
-/// red-green and blue-yellow over the same. Standard errors are of the means of groups of consecutive samples, so that what
-/// stratification gains counts. A block's noise is the root mean square over its pixels: with few groups a pixel alone tells
-/// little about itself, and stopping by it would favour pixels that look quiet because they missed something bright.
+/// over that luminance, or over the picture's floor where it is darker. Its noise in chroma is the root mean square of the
+/// standard errors of red-green and blue-yellow over the same, or over the larger of the two themselves where that is more (pure
+/// blue has little luminance). Standard errors are of the means of groups of consecutive samples, so that what stratification
+/// gains counts. A block's noise is the root mean square over its pixels: with few groups a pixel alone tells little about
+/// itself, and stopping by it would favour pixels that look quiet because they missed something bright.
 namespace opal {
 
 /// Samples of every pixel before its noise is first asked for.

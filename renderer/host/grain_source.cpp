@@ -52,21 +52,43 @@ GrainMethod choose_method(const OpalAsset& asset, GrainsKind asked, const std::s
     return method;
 }
 
-openvdb::BBoxd bounds_mm(const openvdb::FloatGrid& shape) {
-    const openvdb::CoordBBox voxels = shape.evalActiveVoxelBoundingBox();
-    openvdb::BBoxd bounds(shape.indexToWorld(voxels.min()), shape.indexToWorld(voxels.max()));
-    bounds.expand(shape.voxelSize().x());
+/// About all that the surface made from a level set encloses.
+ConvexBounds bounds_of(const openvdb::FloatGrid& shape) {
+    ConvexBounds bounds;
+    bounds.hold_inside(shape);
+    bounds.widen(2.0 * shape.voxelSize().x());
     return bounds;
+}
+
+constexpr std::size_t compared_leaves = 1000;
+
+/// Whether labels are those of the cells that hold the voxels' centres, by a voxel of some leaves each. Rounding may decide a few
+/// otherwise.
+bool agree(const openvdb::Int32Grid& grain_id, const CellField& cells) {
+    const std::size_t stride = std::max<std::size_t>(1, grain_id.tree().leafCount() / compared_leaves);
+    std::size_t index = 0, compared = 0, different = 0;
+    for (auto leaf = grain_id.tree().cbeginLeaf(); leaf; ++leaf, ++index) {
+        const auto voxel = leaf->cbeginValueOn();
+        if (index % stride != 0 || !voxel) continue;
+        const openvdb::Vec3d centre_mm = grain_id.indexToWorld(voxel.getCoord());
+        const Vec3 place{float(centre_mm.x()), float(centre_mm.y()), float(centre_mm.z())};
+        different += cells.grain[locate_cell(cells, place, nearby_cell(cells, place))] != *voxel ? 1 : 0;
+        ++compared;
+    }
+    return 50 * different <= compared;
 }
 
 }  // namespace
 
-GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file)
+GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file, std::vector<std::string>& notices)
     : method_(choose_method(asset, asked, file)) {
-    if (method_ == GrainMethod::voxels)
-        voxels_ = std::make_unique<GrainGridData>(*asset.grain_id);
-    else
-        cells_ = std::make_unique<CellData>(asset.sites, bounds_mm(*asset.shape));
+    if (method_ != GrainMethod::voxels) cells_ = std::make_unique<CellData>(asset.sites, bounds_of(*asset.shape));
+    if (asked == GrainsKind::automatic && cells_ && asset.grain_id && !agree(*asset.grain_id, cells_->field())) {
+        notices.push_back(file + ": grain_id is not made of the cells of its sites; the grains are taken from its voxels");
+        method_ = GrainMethod::voxels;
+        cells_.reset();
+    }
+    if (method_ == GrainMethod::voxels) voxels_ = std::make_unique<GrainGridData>(*asset.grain_id);
     sizes_mm_ = asset.grain_id ? grain_sizes_mm(*asset.grain_id, asset.num_grains())
                                : grain_sizes_mm(cells_->field(), *asset.shape, asset.num_grains());
 }

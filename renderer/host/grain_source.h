@@ -17,8 +17,9 @@ namespace opal {
 class GrainSource {
   public:
     /// Takes cells where they are asked for or, with `automatic`, where the file's sites describe the grains exactly; else
-    /// voxels. `file` is named in errors. Throws InputError where what is asked for cannot be had from the file, saying why.
-    GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file);
+    /// voxels: so where another program has changed the labels, which is told in `notices`. `file` is named in these and in
+    /// errors. Throws InputError where what is asked for cannot be had from the file, saying why.
+    GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file, std::vector<std::string>& notices);
 
     GrainsView view() const;
     /// As in scenes: cells, voxels, sphere-tracing, hyperboloid.

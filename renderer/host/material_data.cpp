@@ -1,11 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/host/material_data.h"
 
+#include <algorithm>
+
+#include "formats/illuminant.h"
 #include "formats/metals.h"
 #include "formats/units.h"
 #include "renderer/host/upsampler.h"
 
 namespace opal {
+namespace {
+
+/// Linear sRGB of a metal's reflectance at normal incidence.
+Rgb daylight_color(const MetalIndex& metal) {
+    SampledSpectrum reflectance;
+    for (int i = 0; i < spectrum_samples; ++i) {
+        reflectance.wavelength_nm.push_back(units::wavelength_min_nm + i);
+        reflectance.value.push_back(normal_reflectance(metal.at(units::wavelength_min_nm + i)));
+    }
+    const Rgb3d color = linear_srgb_from_xyz(xyz_of(reflectance, illuminant_spectrum(IlluminantKind::d65)));
+    const auto in_gamut = [](double component) { return float(std::clamp(component, 0.0, 1.0)); };
+    return {in_gamut(color.r), in_gamut(color.g), in_gamut(color.b)};
+}
+
+}  // namespace
 
 MaterialData::MaterialData(const MaterialDescription& material, UpsamplingMethod upsampling, Dispersion dispersion)
     : roughness_(float(material.roughness)) {
@@ -20,6 +38,7 @@ MaterialData::MaterialData(const MaterialDescription& material, UpsamplingMethod
             index_.push_back(float(index.n));
             extinction_.push_back(float(index.k));
         }
+        albedo_ = upsample_reflectance(upsampling, daylight_color(metal));
     }
     if (material.kind == MaterialKind::plastic) {
         model_ = MaterialModel::plastic;

@@ -92,7 +92,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     else
         surface_ = surface_from_level_set(*asset.shape, file);
 
-    grains_ = std::make_unique<GrainSource>(asset, settings.grains, file);
+    grains_ = std::make_unique<GrainSource>(asset, settings.grains, file, notices);
     opal.grains = grains_->view();
     opal.grain_size_mm = grains_->sizes_mm().data();
     shape_ = std::make_unique<FieldGridData>(*asset.shape);

@@ -34,8 +34,8 @@ struct Chord {
     float length_mm;
 };
 
-/// Chord number `index` of the ball, isotropic, from a hair inside.
-Chord chord(std::uint64_t index) {
+/// Chord number `index` of a ball, isotropic, from a hair inside.
+Chord chord_of_ball(Vec3 centre, std::uint64_t index) {
     const RandomBlock block = random_block(1, RandomStream::bench, index, 0);
     const float z = 2.0f * uniform_float(block.value[0]) - 1.0f, azimuth = 2.0f * pi_f * uniform_float(block.value[1]);
     const float sine = std::sqrt(1.0f - z * z);
@@ -45,7 +45,7 @@ Chord chord(std::uint64_t index) {
     const Frame frame(direction);
     const float half_mm = std::sqrt(radius_mm * radius_mm - offset_mm * offset_mm) - 0.01f;
     const Vec3 middle = offset_mm * (std::cos(turn) * frame.tangent + std::sin(turn) * frame.bitangent);
-    return {middle - half_mm * direction, direction, 2.0f * half_mm};
+    return {centre + middle - half_mm * direction, direction, 2.0f * half_mm};
 }
 
 class GrainsBench {
@@ -60,6 +60,8 @@ class GrainsBench {
     }
 
   private:
+    Chord chord(std::uint64_t index) const { return chord_of_ball(centre_, index); }
+
     void place_sites(const std::string& weights, std::size_t count) {
         // Amplitudes are the largest deviation; sites are 1.6 and 0.54 mm apart.
         const double spacing_mm = 16.1 / std::cbrt(double(count));
@@ -73,6 +75,8 @@ class GrainsBench {
                                                    amplitude_mm, 2.0 * spacing_mm);
         const Recipe recipe = parse_recipe(text, "recipe.toml", {});
         shape_ = make_shape(recipe.shape);
+        const openvdb::Vec3d centre_mm = shape_->bounds_mm().getCenter();
+        centre_ = {float(centre_mm.x()), float(centre_mm.y()), float(centre_mm.z())};
         sites_ = weigh_sites(sample_sites(*shape_, recipe.grains), recipe.grains, *shape_).sites;
         for (std::size_t n = 0; n < sites_.size(); ++n) sites_[n].grain = std::int32_t(n) + 1;
         exact_.clear();
@@ -88,7 +92,9 @@ class GrainsBench {
         GrainsBenchRow row;
         row.weights = weights;
         row.sites = count;
-        const openvdb::BBoxd bounds(openvdb::Vec3d(-double(radius_mm)), openvdb::Vec3d(double(radius_mm)));
+        ConvexBounds bounds;
+        bounds.hold_inside(*shape_->level_set(0.1));
+        bounds.widen(0.2);
         const Stopwatch watch;
         const CellData cells(sites_, bounds);
         const double build_s = watch.seconds();
@@ -169,6 +175,7 @@ class GrainsBench {
     }
 
     std::unique_ptr<Shape> shape_;
+    Vec3 centre_;
     std::vector<Site> sites_;
     std::vector<std::vector<GrainStretch>> exact_;
     std::vector<GrainsBenchRow> rows_;

@@ -13,6 +13,7 @@
 #include "formats/error.h"
 #include "formats/opal_asset.h"
 #include "grains_bench.h"
+#include "materials_bench.h"
 #include "media_bench.h"
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
@@ -89,6 +90,8 @@ int run_bench(int argc, char** argv) {
     CLI::App* const grains = app.add_subcommand("grains", "finding the grains along rays: speed, memory, errors (some minutes)");
     grains->add_option("-o,--output", arguments.folder, "folder for grains.csv")->required()->type_name("DIR");
     grains->add_flag("--quick", arguments.quick, "1,000 sites alone");
+    CLI::App* const materials = app.add_subcommand("materials", "metals' reflectance; what turns once at rough surfaces");
+    materials->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     CLI::App* const checks = app.add_subcommand(
         "media-checks", "examples/media_checks: speed and variance, to be run beside other renderers (some minutes)");
     checks->add_option("-o,--output", arguments.folder, "folder for media_checks.csv and disc.exr")->required()->type_name("DIR");
@@ -117,6 +120,10 @@ int run_bench(int argc, char** argv) {
         return 0;
     }
     if (media->parsed()) return run_media(arguments.folder);
+    if (materials->parsed()) {
+        opal::bench_materials(arguments.folder);
+        return 0;
+    }
     if (checks->parsed()) {
         opal::initialize_openvdb();
         opal::bench_media_checks(arguments.scenes, arguments.folder, arguments.samples);

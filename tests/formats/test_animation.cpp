@@ -56,6 +56,19 @@ TEST(Animation, LightsAndCameraTurn) {
     expect_near(turned.camera.target_mm, scene.camera.target_mm);
 }
 
+TEST(Animation, LightsTurnAboutTheCenter) {
+    const SceneDescription scene = parse(
+        "frames = 10\nlight_sweep_deg = 90\ncenter_mm = [1, 0, 0]\n[[light]]\nkind = \"area\"\nposition_mm = [5, 0, 9]\n"
+        "target_mm = [1, 2, 0]\nup = [0, 1, 0]\n[[light]]\nkind = \"sun\"\nazimuth_deg = 30\n");
+    const SceneDescription turned = scene_of_frame(scene, 2);
+    expect_near(turned.lights[0].position_mm, {1.0, 4.0, 9.0});
+    expect_near(turned.lights[0].target_mm, {-1.0, 0.0, 0.0});
+    expect_near(turned.lights[0].up, {-1.0, 0.0, 0.0});
+    EXPECT_EQ(turned.lights[1].azimuth_deg, 120.0);
+    // What a frame is goes into its file's header, and has to be a scene.
+    EXPECT_EQ(scene_to_toml(parse_scene(scene_to_toml(turned), "x.toml", {})), scene_to_toml(turned));
+}
+
 TEST(Animation, TextReadsBack) {
     const std::string text = scene_to_toml(parse("frames = 5\nturntable_deg = 2.5\nturntable_objects = [\"ball\"]\n"));
     EXPECT_NE(text.find("turntable_objects = [\"ball\"]"), std::string::npos) << text;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -52,6 +53,25 @@ TEST_F(AtomicFileTest, RefusesWhatCannotBeWritten) {
     EXPECT_INPUT_ERROR(require_writable(""), "not a file name");
     EXPECT_INPUT_ERROR(require_writable("/dev/null"), "is a device");
     EXPECT_INPUT_ERROR(require_writable("/proc/a.txt"), "cannot be written");
+}
+
+TEST_F(AtomicFileTest, WhatAKilledProcessLeftIsRemoved) {
+    // A child that ends without a destructor, as by a kill.
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        AtomicFile file(folder_ / "a.state");
+        std::ofstream(file.temporary_path()) << "half";
+        ::_exit(0);
+    }
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    AtomicFile own(folder_ / "a.state");
+    std::ofstream(own.temporary_path()) << "in the making";
+    std::ofstream(folder_ / ".a.notes.tmp.state") << "another's";
+    EXPECT_EQ(files(), 3u);
+    remove_abandoned_temporaries(folder_ / "a.state");
+    EXPECT_EQ(files(), 2u);
+    EXPECT_EQ(content(own.temporary_path()), "in the making");
 }
 
 }  // namespace

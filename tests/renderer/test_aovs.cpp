@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
+#include "formats/illuminant.h"
+#include "formats/metals.h"
 #include "renderer/core/crystal.h"
 #include "small_opal.h"
 
@@ -88,6 +91,30 @@ TEST(Aovs, PlaneHasItsDepthNormalAndAlbedo) {
         EXPECT_EQ(value(x, 5, "object_id"), 0.0);
         EXPECT_EQ(value(x, 5, "grain_id"), 0.0);
     }
+}
+
+/// (n - 1)^2 + k^2 over (n + 1)^2 + k^2 of light that comes straight on, integrated under D65.
+TEST(Aovs, MetalsHaveTheirNormalReflectance) {
+    const Image image = render_text(
+                            "[render]\nwidth = 4\nheight = 4\n[film]\naovs = [\"albedo\"]\n"
+                            "[camera]\nkind = \"orthographic\"\nview_height_mm = 1\nposition_mm = [0, 0, 30]\n"
+                            "target_mm = [0, 0, 0]\nup = [0, 1, 0]\n[[material]]\nname = \"gold\"\nkind = \"conductor\"\n"
+                            "metal = \"gold\"\n[[object]]\nkind = \"plane\"\nmaterial = \"gold\"\n",
+                            1)
+                            .image;
+    const float* albedo = image.pixel(2, 2) + image.find_channel("albedo.R");
+    const SampledSpectrum light = illuminant_spectrum(IlluminantKind::d65);
+    std::vector<double> reflected;
+    for (int i = 0; i < colorimetric_samples; ++i) {
+        const double wavelength_nm = colorimetric_min_nm + i;
+        reflected.push_back(light.at(wavelength_nm) * normal_reflectance(MetalIndex::of_metal("gold").at(wavelength_nm)));
+    }
+    const Rgb3d expected =
+        linear_srgb_from_xyz(xyz_of(std::span<const double, colorimetric_samples>(reflected.data(), colorimetric_samples)));
+    EXPECT_NEAR(double(albedo[0]), expected.r, 1.0e-4);
+    EXPECT_NEAR(double(albedo[1]), expected.g, 1.0e-4);
+    EXPECT_NEAR(double(albedo[2]), expected.b, 1.0e-4);
+    EXPECT_GT(expected.r, 2.0 * expected.b);
 }
 
 /// At the border of an object the albedo is the share of the pixel that it covers.

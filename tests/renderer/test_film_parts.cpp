@@ -101,9 +101,7 @@ TEST(FilmParts, RangesAsText) {
 }
 
 TEST(RenderFingerprint, TellsWhatDiffers) {
-    const auto of = [](const std::vector<std::string>& overrides) {
-        return render_fingerprint(PlaneScene(overrides).description);
-    };
+    const auto of = [](const std::vector<std::string>& overrides) { return render_fingerprint(plane_description(overrides)); };
     const std::string fingerprint = of({});
     // How many samples there are and how they are shown is free.
     EXPECT_EQ(fingerprint, of({"render.samples=7", "film.exposure_ev=1.5", "film.aovs=[\"depth\"]"}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "../formats/expect_error.h"
 #include "formats/metals.h"
 #include "small_opal.h"
 
@@ -89,6 +90,17 @@ TEST(Materials, ADensityGridOfOneIsTheMediumItself) {
     EXPECT_LT(a.mean, 0.9);
     EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standard_error, b.standard_error));
     EXPECT_LT(a.standard_error, 0.005);
+    const auto with = [&](const std::string& keys) {
+        return view + ball(medium + ", " + keys + ", density_file = '" + (folder / "d.vdb").string() + "' }\n");
+    };
+    EXPECT_INPUT_ERROR(render_text(with("density_grid = \"densty\""), 1), "d.vdb: no grid of floats named 'densty'");
+    density->tree().setValueOn({0, 0, 0}, -1.0f);
+    openvdb::io::File((folder / "d.vdb").string()).write({density});
+    EXPECT_INPUT_ERROR(render_text(with("density_scale = 1"), 1),
+                       "grid density: voxel [0, 0, 0] holds -1; allowed: numbers from 0");
+    density->setTransform(openvdb::math::Transform::createLinearTransform(1.0e-6));
+    openvdb::io::File((folder / "d.vdb").string()).write({density});
+    EXPECT_INPUT_ERROR(render_text(with("density_scale = 1"), 1), "voxels along the object's longest side");
 }
 
 }  // namespace
