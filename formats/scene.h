@@ -45,9 +45,9 @@ struct RenderDescription {
     double noise = 0.0;  ///< relative error of luminance and chroma at which a place gets no more samples; 0: samples everywhere
     int max_bounces = 64;
     std::uint64_t seed = 1;
-    SamplerKind sampler = SamplerKind::stratified;
+    SamplerKind sampler = SamplerKind::sobol;
     LightSamplingKind light_sampling = LightSamplingKind::both;
-    bool guided = true;  ///< scattered light is drawn towards where photons came from
+    bool guided = false;  ///< half of the scattered light is drawn towards where photons came from
     FilterKind filter = FilterKind::tent;
     double filter_radius_px = 1.0;
     std::optional<PixelWindow> crop;  ///< the part of the picture that is drawn; unset: all

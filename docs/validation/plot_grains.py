@@ -49,11 +49,12 @@ def plot(rows):
             many = row["sites"] > 10000
             axis.plot([row["ns_per_grain"]], [max(row[key], 1e-8)], marker="s" if many else "o", color=COLOURS[row["method"]],
                       markersize=7)
-            axis.annotate(row["name"], (row["ns_per_grain"], max(row[key], 1e-8)), fontsize=7, xytext=(6, -2),
-                          textcoords="offset points")
+            axis.annotate(row["name"], (row["ns_per_grain"], max(row[key], 1e-8)), fontsize=7, ha="center",
+                          xytext=(0, 7 if many else -13), textcoords="offset points")
         axis.set_xscale("log")
         axis.set_yscale("log")
-        axis.set_xlim(right=3 * max(row["ns_per_grain"] for row in rows))
+        axis.set_xlim(50, 2 * max(row["ns_per_grain"] for row in rows))
+        axis.margins(y=0.1)
         axis.set_xlabel("ns per grain crossed, one thread")
         axis.set_ylabel(label)
         axis.grid(True, which="both", alpha=0.2)

@@ -9,17 +9,14 @@ namespace opal {
 /// Share of the directions that the guide draws; the phase functions draw the rest, so that no weight exceeds 1 / (1 - share).
 inline constexpr float guide_share = 0.5f;
 
-/// Per lane, the density of scattering into a direction, given that it scatters: Rayleigh's and the other phase function by their
+/// Density (1/sr) of scattering into a direction, given that light scatters: Rayleigh's and the other phase function by their
 /// shares.
-template <int N>
-OPAL_HD inline float phase_mixture(const MediumView& view, const LaneMedium<N>& local, int lane, float cosine,
+OPAL_HD inline float phase_mixture(const MediumView& view, float sigma_rayleigh, float sigma_mie, float cosine,
                                    float wavelength_nm) {
-    const float sigma_s = local.sigma_s(lane);
-    if (!(sigma_s > 0.0f)) return 0.0f;
     float sum = 0.0f;
-    if (local.sigma_rayleigh.v[lane] > 0.0f) sum += local.sigma_rayleigh.v[lane] * rayleigh_phase(cosine);
-    if (local.sigma_mie.v[lane] > 0.0f) sum += local.sigma_mie.v[lane] * phase_density(view.mie_phase, cosine, wavelength_nm);
-    return sum / sigma_s;
+    if (sigma_rayleigh > 0.0f) sum += sigma_rayleigh * rayleigh_phase(cosine);
+    if (sigma_mie > 0.0f) sum += sigma_mie * phase_density(view.mie_phase, cosine, wavelength_nm);
+    return sum > 0.0f ? sum / (sigma_rayleigh + sigma_mie) : 0.0f;
 }
 
 /// As scatter_direction, with half of the directions drawn from the guide. Each lane's weight is its phase function over its own
@@ -44,16 +41,14 @@ OPAL_HD inline Vec3 guided_scatter_direction(const MediumView& view, const Light
     }
     const float cosine = max_of(-1.0f, min_of(1.0f, dot(direction, turned)));
     const float guided = share > 0.0f ? share * directions.pdf(turned) : 0.0f;
-    float hero_density = 1.0f;
+    float density[N];
     for (int i = 0; i < weights.count; ++i) {
-        const float phase = phase_mixture(view, local, i, cosine, wavelengths.wavelength_nm[i]);
-        const float density = (1.0f - share) * phase + guided;
-        weights.throughput.v[i] *= phase / density;
-        if (i == 0)
-            hero_density = local.sigma_s(0) * density;
-        else
-            weights.ratio.v[i] *= local.sigma_s(i) * density / hero_density;
+        const float phase =
+            phase_mixture(view, local.sigma_rayleigh.v[i], local.sigma_mie.v[i], cosine, wavelengths.wavelength_nm[i]);
+        density[i] = (1.0f - share) * phase + guided;
+        weights.throughput.v[i] *= phase / density[i];
     }
+    for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= local.sigma_s(i) * density[i] / (local.sigma_s(0) * density[0]);
     return turned;
 }
 

@@ -31,7 +31,8 @@ void set_phase(const MediumView& medium, LightGuideView& guide) {
     const LaneMedium<1> lanes = lane_medium(medium, wavelengths);
     for (int node = 0; node < guide_phase_nodes; ++node) {
         const float cosine = -1.0f + 2.0f * (float(node) + 0.5f) / float(guide_phase_nodes);
-        guide.phase[node] = max_of(1.0e-4f, phase_mixture(medium, lanes, 0, cosine, wavelength_nm));
+        guide.phase[node] =
+            max_of(1.0e-4f, phase_mixture(medium, lanes.sigma_rayleigh.v[0], lanes.sigma_mie.v[0], cosine, wavelength_nm));
     }
 }
 

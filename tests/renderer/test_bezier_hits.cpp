@@ -7,32 +7,10 @@
 #include "renderer/cpu/embree_scene.h"
 #include "renderer/host/mesh_topology.h"
 #include "renderer/host/patch_surface.h"
+#include "round_body.h"
 
 namespace opal {
 namespace {
-
-/// A closed body of eight patches: an octant of an ellipsoid by cubic arcs, mirrored. Its poles are collapsed edges.
-std::vector<BezierPatch> round_body(double rx, double ry, double rz) {
-    const double k = 4.0 / 3.0 * (std::sqrt(2.0) - 1.0);
-    // A quarter circle from (1, 0) to (0, 1).
-    const double arc[4][2] = {{1.0, 0.0}, {1.0, k}, {k, 1.0}, {0.0, 1.0}};
-    std::vector<BezierPatch> patches;
-    for (int octant = 0; octant < 8; ++octant) {
-        const double sx = octant & 1 ? -1.0 : 1.0, sy = octant & 2 ? -1.0 : 1.0, sz = octant & 4 ? -1.0 : 1.0;
-        const bool mirrored = sx * sy * sz < 0.0;
-        BezierPatch patch;
-        patch.part = 0;
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) {
-                const int around = mirrored ? 3 - i : i;  // keeps the normal outward
-                const double c[3] = {sx * rx * arc[around][0] * arc[j][0], sy * ry * arc[around][1] * arc[j][0],
-                                     sz * rz * arc[j][1]};
-                for (int axis = 0; axis < 3; ++axis) patch.control_mm[i][j][axis] = c[axis];
-            }
-        patches.push_back(patch);
-    }
-    return patches;
-}
 
 struct Place {
     long double p[3];

@@ -11,14 +11,15 @@ namespace {
 /// wavelength, whatever reflects, refracts, diffracts or scatters, up to what the bounce limit cuts off, which the render
 /// reports.
 void expect_invisible(const SmallOpal& small, const std::string& settings, int samples, double largest_error = 0.003,
-                      const std::string& view = "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n") {
+                      const std::string& view = "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n",
+                      const std::string& render = "") {
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
-    const Rendered rendered =
-        render_text("[render]\nwidth = 48\nheight = 48\nsampler = \"independent\"\nfilter = \"box\"\n[camera]\n" + view +
-                        "vertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
-                        (folder / "opal.vdb").string() + "'\n" + settings,
-                    samples);
+    const Rendered rendered = render_text(
+        "[render]\nwidth = 48\nheight = 48\nsampler = \"independent\"\nfilter = \"box\"\n" + render + "[camera]\n" + view +
+            "vertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
+            (folder / "opal.vdb").string() + "'\n" + settings,
+        samples);
     const RenderOutcome& outcome = rendered.outcome;
     EXPECT_EQ(outcome.counters.not_a_number, 0u);
     EXPECT_LE(outcome.counters.lost_paths, outcome.totals.samples / 100000);
@@ -109,6 +110,16 @@ TEST(Furnace, EveryFeature) {
     // Where refraction disperses, companions drop out at the surface: as noisy as one wavelength.
     expect_invisible(small, "[opal]\ncompanions = 3\n", 120, 0.005);
     expect_invisible(small, "[opal]\ncompanions = 7\ndispersion = \"bands\"\n", 110, 0.005);
+}
+
+/// Half of the scattered light drawn towards where photons came from.
+TEST(Furnace, GuidedScattering) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 300.0;
+    small.constants.sigma_s_rayleigh_400nm_per_mm = 0.1;
+    small.constants.sigma_s_mie_per_mm = 0.2;
+    small.constants.mie_phase = MiePhase::lorenz_mie;
+    expect_invisible(small, "", 120, 0.005, "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n", "guided = true\n");
 }
 
 TEST(Furnace, OtherModels) {

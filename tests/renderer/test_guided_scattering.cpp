@@ -63,7 +63,7 @@ TEST(GuidedScattering, ChangesNothingButTheNoise) {
 TEST(GuidedScattering, GuidesAreReproducible) {
     const ScratchFolder folder;
     write_opal_asset(scattering_opal().make(), folder / "opal.vdb");
-    const SceneDescription scene = parse_scene(scene_of(folder / "opal.vdb", ""), "test.toml", {});
+    const SceneDescription scene = parse_scene(scene_of(folder / "opal.vdb", "guided = true\n"), "test.toml", {});
     std::vector<std::string> notices;
     const HostScene host(scene, notices);
     const EmbreeScene intersector(host.meshes());

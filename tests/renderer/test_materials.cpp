@@ -3,6 +3,7 @@
 
 #include "../formats/expect_error.h"
 #include "formats/metals.h"
+#include "round_body.h"
 #include "small_opal.h"
 
 /// Balls of every material under uniform light of radiance 1, against closed forms.
@@ -49,6 +50,20 @@ TEST(Materials, RoughOpalIsInvisible) {
             "'\n[[material]]\nname = \"g\"\nkind = \"dielectric\"\nn = 1.6\n[[object]]\nkind = \"sphere\"\nradius_mm = 1\n"
             "material = \"g\"\npriority = 1\n",
         150, 0.006);
+}
+
+/// Two overlapping parts of an exact surface are one body: nothing between them. Paths that slip through at the edges of patches
+/// are lost, a few in ten thousand.
+TEST(Materials, PartsOfAnExactSurfaceAreOneBody) {
+    OpalAsset asset = SmallOpal().make();
+    asset.bezier_patches = round_body(1.6, 1.4, 1.2, -0.8, 0);
+    const std::vector<BezierPatch> second = round_body(1.5, 1.5, 1.5, 0.9, 1);
+    asset.bezier_patches.insert(asset.bezier_patches.end(), second.begin(), second.end());
+    const ScratchFolder folder;
+    write_opal_asset(asset, folder / "opal.vdb");
+    expect_invisible("[opal]\ndiffraction = \"none\"\n[[object]]\nkind = \"opal\"\nexact = true\nfile = '" +
+                         (folder / "opal.vdb").string() + "'\n",
+                     120, 0.006);
 }
 
 TEST(Materials, WhitePlasticIsInvisible) {
