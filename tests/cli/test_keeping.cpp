@@ -52,13 +52,13 @@ class Keeping : public testing::Test {
 
 TEST_F(Keeping, KilledAndResumedTwiceIsTheUnbrokenRender) {
     expect_success(render("whole.exr", "--spp 192"));
-    const std::string broken = render("broken.exr", "--spp 192 --threads 1 --checkpoint 0.1s");
-    break_off(broken, "KILL", "broken.checkpoint");
+    const std::string broken = render("broken.exr", "--spp 192 --checkpoint 0.1s");
+    break_off(broken + " --threads 1", "KILL", "broken.checkpoint");
     EXPECT_FALSE(std::filesystem::exists(at("broken.exr"))) << "the test's render must be long enough to be broken off";
     run_program("timeout --signal=KILL 0.7 " + broken + " --resume");
     expect_success(broken + " --resume --threads 1 --stats " + at("stats.json"));
-    EXPECT_EQ(bytes_of(at("whole.exr")), bytes_of(at("broken.exr")));
-    EXPECT_EQ(bytes_of(at("whole.png")), bytes_of(at("broken.png")));
+    EXPECT_TRUE(bytes_of(at("whole.exr")) == bytes_of(at("broken.exr")));
+    EXPECT_TRUE(bytes_of(at("whole.png")) == bytes_of(at("broken.png")));
     EXPECT_FALSE(std::filesystem::exists(at("broken.checkpoint"))) << "a finished render needs none";
     const nlohmann::json stats = nlohmann::json::parse(bytes_of(at("stats.json")));
     EXPECT_GT(stats["checkpoints"]["resumed_from"]["samples_per_pixel"], 0.0);
@@ -72,14 +72,14 @@ TEST_F(Keeping, InterruptedAdaptiveRenderIsResumed) {
     break_off(render("broken.exr", flags + " --threads 1"), "INT", "broken.checkpoint");
     EXPECT_TRUE(std::filesystem::exists(at("broken.exr")));
     expect_success(render("broken.exr", flags + " --resume"));
-    EXPECT_EQ(bytes_of(at("whole.exr")), bytes_of(at("broken.exr")));
+    EXPECT_TRUE(bytes_of(at("whole.exr")) == bytes_of(at("broken.exr")));
 }
 
 TEST_F(Keeping, SamplesAreAddedToAFinishedRender) {
     expect_success(render("whole.exr", "--spp 40"));
     expect_success(render("grown.exr", "--spp 24 --keep-checkpoint"));
     expect_success(render("grown.exr", "--spp 40 --resume --keep-checkpoint"));
-    EXPECT_EQ(bytes_of(at("whole.exr")), bytes_of(at("grown.exr")));
+    EXPECT_TRUE(bytes_of(at("whole.exr")) == bytes_of(at("grown.exr")));
     expect_failure(render("grown.exr", "--spp 24 --resume"), 2, "already has 40 samples per pixel, more than the 24 asked for");
     expect_failure(render("grown.exr", "--spp 48 --resume --seed 2"), 2, "of another render: render.seed is 1 in the checkpoint");
     expect_failure(render("whole.exr", "--spp 48 --resume"), 2, "there is no " + at("whole.checkpoint"));
@@ -102,13 +102,13 @@ TEST_F(Keeping, VanishedFolderLeavesTheStateInTheTemporaryOne) {
     std::filesystem::rename(kept, at("out/lost.checkpoint"));
     expect_success(render("out/lost.exr", flags + " --resume"));
     expect_success(render("whole.exr", flags));
-    EXPECT_EQ(bytes_of(at("whole.exr")), bytes_of(at("out/lost.exr")));
+    EXPECT_TRUE(bytes_of(at("whole.exr")) == bytes_of(at("out/lost.exr")));
 }
 
 TEST_F(Keeping, FullDiskEndsInOneErrorAndNothingHalfWritten) {
     const std::size_t files = count_files(at(""));
-    // A limit on the size of files fails the way a full disk does; 256 KiB hold no state of this picture.
-    const ProgramResult result = run_program("ulimit -f 512; " + render("full.exr", "--spp 64 --checkpoint 0.1s"));
+    // A limit on the size of files fails the way a full disk does; 100 KiB hold the picture, but not its state.
+    const ProgramResult result = run_program("ulimit -f 200; " + render("full.exr", "--spp 128 --threads 1 --checkpoint 0.1s"));
     EXPECT_EQ(result.exit_code, 0) << "the picture itself is small: " << result.err;
     EXPECT_NE(result.err.find("warning: no checkpoint: "), std::string::npos) << result.err;
     EXPECT_EQ(count_files(at("")), files + 2);
@@ -131,7 +131,7 @@ TEST_F(Keeping, PartsMergeToTheWhole) {
             EXPECT_EQ(std::nextafter(whole.pixels[i], merged.pixels[i]), merged.pixels[i]);
         }
     EXPECT_LE(different, 1u);
-    EXPECT_EQ(bytes_of(at("whole.png")), bytes_of(at("merged.png")));
+    EXPECT_TRUE(bytes_of(at("whole.png")) == bytes_of(at("merged.png")));
 
     const ProgramResult some = run_program(opal_render + " merge " + at("b.exr") + " -o " + at("some.exr"));
     EXPECT_EQ(some.exit_code, 0);
