@@ -39,7 +39,7 @@ TEST(GuidedScattering, ChangesNothingButTheNoise) {
             return render_text(
                        scene_of(folder / "opal.vdb",
                                 std::string("guided = ") + guided + "\nseed = " + (guided[0] == 't' ? "1" : "2") + "\n", lights),
-                       192)
+                       96)
                 .outcome.totals;
         };
         const SpectrumTotals guided = render("true"), plain = render("false");
