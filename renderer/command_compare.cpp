@@ -10,6 +10,7 @@
 #include "formats/error.h"
 #include "renderer/host/development.h"
 #include "renderer/host/image_comparison.h"
+#include "renderer/number_option.h"
 #include "renderer/render_command.h"
 
 namespace opal {
@@ -75,7 +76,7 @@ int command_compare(int argc, char** argv) {
     app.add_option("A", options.picture, "the picture (.exr)")->required();
     app.add_option("B", options.reference, "the reference (.exr)")->required();
     app.add_option("--exposure-ev", options.exposure_ev, "stops by which both are shown brighter (default: as B's scene asks)")
-        ->check(CLI::Range(-40.0, 40.0));
+        ->check(number_between(-40.0, 40.0));
     app.add_option("--difference", options.difference, "write A - B and CIEDE2000 per pixel (.exr)");
     app.add_flag("--json", options.json, "print JSON");
     if (const std::optional<int> code = parse_command_line(app, argc, argv)) return *code;

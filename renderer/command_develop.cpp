@@ -8,6 +8,7 @@
 #include "formats/error.h"
 #include "formats/film_settings.h"
 #include "renderer/host/development.h"
+#include "renderer/number_option.h"
 #include "renderer/pixel_window_flag.h"
 #include "renderer/render_command.h"
 
@@ -40,7 +41,8 @@ int command_develop(int argc, char** argv) {
     app.footer(footer);
     app.add_option("IN", options.picture, "the picture (.exr)")->required();
     app.add_option("-o,--output", options.output, "picture to write (.png)")->required();
-    app.add_option("--exposure", options.exposure_ev, "stops brighter than the linear picture")->check(CLI::Range(-40.0, 40.0));
+    app.add_option("--exposure", options.exposure_ev, "stops brighter than the linear picture")
+        ->check(number_between(-40.0, 40.0));
     app.add_option("--white", options.white, "D65, A, E or a temperature such as 6500K");
     app.add_option("--tone", options.tone, "filmic, srgb or none")->check(CLI::IsMember(tone_names));
     app.add_option("--crop", options.crop, "x0,y0,x1,y1: pixels of the whole picture, the ends not counted");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/render_options.h"
+#include "renderer/number_option.h"
 
 #include <fmt/format.h>
 
@@ -78,7 +79,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
         app.add_option("--tev", tev, "show the picture while it is made in the viewer tev: host, host:port (default port 14158)");
     app.add_option("--noise", options.noise,
                    "stop where luminance and chroma have this relative error, instead of render.noise; 0: nowhere")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(number_between(0.0, 1.0));
     std::string samples_of, interval = "60s";
     app.add_option("--samples", samples_of, "draw samples A:B (A <= i < B) of each pixel alone: a part for opal-render merge");
     app.add_option("--checkpoint", interval, "keep the render's state in OUT.checkpoint every so often: 60s, 5m or off")

@@ -15,8 +15,8 @@
 namespace opal {
 namespace {
 
-/// Along an object: more than memory holds of any field that is not empty.
-constexpr int most_voxels = 65536;
+/// Along an object. The skin of its box alone is half a gigabyte then.
+constexpr int most_voxels = 1024;
 
 openvdb::FloatGrid::Ptr read_density(const MediumDescription& medium) {
     const RawOpalFile raw = read_raw_opal_file(medium.density_file);

@@ -119,7 +119,7 @@ TEST(Furnace, GuidedScattering) {
     small.constants.sigma_s_rayleigh_400nm_per_mm = 0.1;
     small.constants.sigma_s_mie_per_mm = 0.2;
     small.constants.mie_phase = MiePhase::lorenz_mie;
-    expect_invisible(small, "", 120, 0.005, "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n", "guided = true\n");
+    expect_invisible(small, "", 180, 0.005, "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n", "guided = true\n");
 }
 
 TEST(Furnace, OtherModels) {
