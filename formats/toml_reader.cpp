@@ -159,11 +159,20 @@ bool TomlSection::is_text(const std::string& key) const {
     return has(key) && table_->get(key)->is_string();
 }
 
+namespace {
+
+/// Of a number; whole ones beyond 2^53 are rounded.
+double as_double(const toml::node& node) {
+    return node.is_integer() ? static_cast<double>(*node.value<std::int64_t>()) : *node.value<double>();
+}
+
+}  // namespace
+
 double TomlSection::number(const std::string& key, double fallback, const NumberRange& range) {
     const toml::node* node = find(key);
     if (!node) return fallback;
     if (!node->is_number()) fail(key, fmt::format("expected a number ({}), found {}", range.describe(), describe_type(*node)));
-    const double value = node->value<double>().value();
+    const double value = as_double(*node);
     if (!range.contains(value)) fail(key, fmt::format("{:g} is out of range; allowed: {}", value, range.describe()));
     return value;
 }
@@ -204,7 +213,7 @@ std::array<double, 3> TomlSection::vector3(const std::string& key, const std::ar
     if (!node) return fallback;
     const auto checked = [&](const toml::node& element) {
         if (!element.is_number()) fail(key, "expected numbers, found " + describe_type(element));
-        const double value = element.value<double>().value();
+        const double value = as_double(element);
         if (!range.contains(value)) fail(key, fmt::format("{:g} is out of range; allowed: {}", value, range.describe()));
         return value;
     };

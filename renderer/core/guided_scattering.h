@@ -46,7 +46,7 @@ OPAL_HD inline Vec3 guided_scatter_direction(const MediumView& view, const Light
         const float phase =
             phase_mixture(view, local.sigma_rayleigh.v[i], local.sigma_mie.v[i], cosine, wavelengths.wavelength_nm[i]);
         density[i] = (1.0f - share) * phase + guided;
-        weights.throughput.v[i] *= phase / density[i];
+        weights.throughput.v[i] *= density[i] > 0.0f ? phase / density[i] : 0.0f;
     }
     for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= local.sigma_s(i) * density[i] / (local.sigma_s(0) * density[0]);
     return turned;

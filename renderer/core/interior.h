@@ -101,6 +101,7 @@ OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wave
                             InteriorEvent& event) {
     ++counters.scatterings;
     event.kind = InteriorEventKind::scattering;
+    event.turned_back = false;
     event.direction = opal.guide.weight ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
                                                                    event.direction, weights, random)
                                         : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);

@@ -89,7 +89,7 @@ class PathTracer {
                 }
             }
             if (!ahead.found()) {
-                add_distant_lights(ray.direction);
+                add_distant_lights(ray.direction, bounce == 0);
                 return;
             }
             if (ahead.meets_light()) {
@@ -274,10 +274,11 @@ class PathTracer {
 
     OPAL_HD void add_met_light(Vec3 direction, int light) { add_light(direction, light, weight_of_met(direction, light)); }
 
-    /// The environment and the suns in front of it.
-    OPAL_HD void add_distant_lights(Vec3 direction) {
+    /// The environment and the suns in front of it; `direct`: as the camera sees them.
+    OPAL_HD void add_distant_lights(Vec3 direction, bool direct) {
         add_environment(direction, weight_of_met(direction, environment_light));
         for (int i = 0; i < scene_.lights.count; ++i) {
+            if (direct && !scene_.lights.lights[i].visible) continue;
             const LightGeometry& geometry = scene_.lights.lights[i].geometry;
             if (geometry.shape == LightShape::sun && in_sun(geometry, direction)) add_met_light(direction, i);
         }

@@ -41,7 +41,7 @@ OPAL_HD inline EmittedPhoton emit_photon(const SceneView& scene, const Intersect
         const Vec3 source = bounds.center_mm + sample.distance_mm * sample.direction;
         photon.ray = {source, normalize(place - source)};
         photon.ray.origin = source + (1.0e-4f * sample.distance_mm) * photon.ray.direction;
-        radiance = light_radiance(scene.lights.lights[sample.light], photon.ray.direction, wavelength_nm);
+        radiance = light_radiance(scene.lights.lights[sample.light], -photon.ray.direction, wavelength_nm);
     } else {
         const Vec3 start = place + (2.0f * bounds.radius_mm) * sample.direction;
         if (intersector.occluded({start, sample.direction}, 3.0e38f)) return photon;

@@ -101,6 +101,9 @@ void build_tables(const Picture& picture, EnvironmentMap& map) {
     }
 }
 
+/// Sums of more would leave the range of single precision.
+constexpr double largest_radiance = 1.0e30;
+
 double mean_luminance(const Picture& picture) {
     double sum = 0.0, solid_angle = 0.0;
     for (int y = 0; y < picture.height; ++y) {
@@ -127,6 +130,10 @@ EnvironmentMap make_environment(const EnvironmentDescription& description, Upsam
     map.texels.reserve(picture.texels.size());
     const UpsamplingMethod method = upsampling_method(upsampling);
     for (const Rgb& texel : picture.texels) {
+        const double largest = description.radiance * double(std::max({texel.r, texel.g, texel.b}));
+        if (!(largest <= largest_radiance))
+            throw InputError(fmt::format("{}: radiance {:.3g}, times environment.radiance; allowed: up to {:g}",
+                                         description.file.string(), largest, largest_radiance));
         map.texels.push_back(upsample_radiance(method, texel));
         map.texels.back().scale *= float(description.radiance);
     }

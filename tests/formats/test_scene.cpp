@@ -137,6 +137,8 @@ TEST(Scene, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse("[[object]]\nkind = \"plane\"\n"), "object.0.material: is needed");
     EXPECT_INPUT_ERROR(parse("[object]\nkind = \"plane\"\n"), "expected tables written as [[object]]");
     EXPECT_INPUT_ERROR(parse(minimal, {"object.1.file=x.vdb"}), "there are 1 entries");
+    EXPECT_INPUT_ERROR(parse(minimal, {"camera.vertical_fov_deg=9007199254740993"}), "is out of range");
+    EXPECT_INPUT_ERROR(parse(minimal, {"camera.position_mm=[9007199254740993,0,0]"}), "is out of range");
 }
 
 }  // namespace

@@ -104,8 +104,10 @@ TEST(LightsInScenes, CameraSeesLights) {
     expect(look(disk + "[0, 9, 0]\n"), 0.0);
     // The sun behind the object is seen in the sky: 0.25 and irradiance / (pi sin^2).
     const double sine = std::sin(units::rad_from_deg(5.0));
-    expect(look("[[light]]\nkind = \"sun\"\nelevation_deg = 0\nazimuth_deg = 90\nangular_diameter_deg = 10\nirradiance = 0.1\n"),
-           0.25 + 0.1 / (units::pi * sine * sine));
+    const std::string sun =
+        "[[light]]\nkind = \"sun\"\nelevation_deg = 0\nazimuth_deg = 90\nangular_diameter_deg = 10\nirradiance = 0.1\n";
+    expect(look(sun), 0.25 + 0.1 / (units::pi * sine * sine));
+    expect(look(sun + "visible = false\n"), 0.25);
 }
 
 /// Inside one large luminous sphere, in the dark, a clear scattering opal is as bright as the sphere: nothing is lost or counted
