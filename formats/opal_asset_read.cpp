@@ -12,6 +12,8 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <new>
+#include <stdexcept>
 
 #include "formats/error.h"
 #include "formats/opal_asset.h"
@@ -224,6 +226,14 @@ RawOpalFile read_raw_opal_file(const std::filesystem::path& path) {
         openvdb::io::Stream archive(stream, /*delayLoad=*/false);
         raw.grids = *archive.getGrids();
         raw.metadata = *archive.getMetadata();
+    } catch (const std::bad_alloc&) {
+        throw InputError(
+            fmt::format("{}: damaged, or larger than memory: a length in it asks for more memory than there is", path.string()));
+    } catch (const std::length_error&) {
+        throw InputError(fmt::format("{}: damaged: a length in it is impossible", path.string()));
+    } catch (const std::ios_base::failure&) {
+        throw InputError(
+            fmt::format("{}: not a complete .vdb file: it ends too early, or a length in it is damaged", path.string()));
     } catch (const std::exception& exception) {
         throw InputError(fmt::format("{}: not a complete .vdb file: {}", path.string(), exception.what()));
     }

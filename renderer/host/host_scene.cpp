@@ -88,7 +88,7 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
-    : environment_(make_environment(description.environment, description.color.upsampling)),
+    : environment_(make_environment(description.environment, description.color.upsampling, &notices)),
       lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
       spectra_(make_spectra(description, environment_, lights_)),
       guided_(description.render.guided) {

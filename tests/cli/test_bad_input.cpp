@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "../renderer/small_opal.h"
+#include "formats/error.h"
 #include "formats/opal_asset.h"
 #include "run_program.h"
 
@@ -88,6 +90,8 @@ TEST_F(BadInput, ModelCommandLine) {
     expect_failure(build("good.toml", "--for " + at("no_scene.toml")), 2, "no_scene.toml: no such file");
     expect_failure(build("good.toml", "--for " + at("good.toml")), 2, "good.toml:");
     expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels 0"), 2, "--for-pixels");
+    expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels nan"), 2,
+                   "--for-pixels: nan is not a number from 0.01 to 100");
     expect_failure(opal_model + " info " + at("good.toml"), 2, "not a complete .vdb file");
     expect_failure(opal_model + " check " + at("nothing.vdb"), 2, "no such file");
 }
@@ -116,6 +120,40 @@ TEST_F(BadInput, Opal) {
     expect_failure(render("scene.toml", "--set object.0.file=" + at("text.vdb")), 2, "text.vdb: not a complete .vdb file");
     expect_failure(render("scene.toml", "--set object.0.file=" + at("cut.vdb")), 2, "cut.vdb: not a complete .vdb file");
     expect_nothing_written(files);
+}
+
+/// Whatever byte is wrong: the file is read, or refused in words that say something about it.
+TEST_F(BadInput, DamagedOpal) {
+    std::ifstream file(folder_ / "opal.vdb", std::ios::binary);
+    const std::string good((std::istreambuf_iterator<char>(file)), {});
+    std::vector<std::string> notices;
+    std::size_t refused = 0;
+    for (std::size_t i = 0; i < good.size(); i += i < 2000 ? 7 : 1 + good.size() / 200) {
+        std::string damaged = good;
+        damaged[i] = char(damaged[i] ^ 0xFF);
+        write("damaged.vdb", damaged);
+        try {
+            read_opal_asset(folder_ / "damaged.vdb", {}, notices);
+        } catch (const InputError& error) {
+            ++refused;
+            EXPECT_EQ(std::string(error.what()).find("std::"), std::string::npos) << i << ": " << error.what();
+            EXPECT_NE(std::string(error.what()).find("damaged.vdb: "), std::string::npos) << i << ": " << error.what();
+        }
+    }
+    EXPECT_GT(refused, 50u);
+}
+
+/// One error is one line, whatever a name holds.
+TEST_F(BadInput, LineBreaksInNames) {
+    const std::string name = "'" + at("no\nsuch\tfile.toml") + "'";
+    expect_failure(opal_render + " " + name + " -o " + at("out.exr"), 2, "no\\nsuch\\tfile.toml: no such file");
+    expect_failure(opal_model + " build " + name + " -o " + at("out.vdb"), 2, "no\\nsuch\\tfile.toml: no such file");
+    const ProgramResult result = run_program(opal_model + " info " + name);
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    std::filesystem::copy_file(at("opal.vdb"), at("two\nlines.vdb"));
+    const ProgramResult check = run_program(opal_model + " check '" + at("two\nlines.vdb") + "'");
+    EXPECT_EQ(check.exit_code, 0);
+    EXPECT_EQ(std::count(check.out.begin(), check.out.end(), '\n'), std::ptrdiff_t(1)) << check.out;
 }
 
 TEST_F(BadInput, Scene) {
