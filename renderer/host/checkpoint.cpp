@@ -12,7 +12,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/error.h"
-#include "renderer/host/content_hash.h"
+#include "formats/content_hash.h"
 
 namespace opal {
 namespace {

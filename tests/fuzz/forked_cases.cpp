@@ -18,6 +18,10 @@
 #include <new>
 #include <stdexcept>
 
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
+
 #include "seed_files.h"
 
 namespace opal::fuzz {
@@ -25,8 +29,8 @@ namespace {
 
 constexpr std::size_t num_kinds = 13;
 constexpr std::uint64_t cases_per_process = 200;
-/// What a process's first cases leave on the heap are tables that are made once.
-constexpr std::uint64_t warm_up_cases = 20;
+/// What a process's first cases of a kind leave on the heap are tables that are made once.
+constexpr int warm_up_cases = 3;
 
 struct KindCounts {
     std::uint64_t run, results, refused, defects, measured;
@@ -79,8 +83,12 @@ int in_child(const std::function<void()>& work) {
             std::fflush(stdout);
             std::_Exit(1);
         }
-        // Through the ordinary end, where a leak sanitizer looks.
-        std::exit(0);
+#if defined(__SANITIZE_ADDRESS__)
+        __lsan_do_leak_check();
+#endif
+        // Not through exit(): libraries wait there for threads that this process has not got.
+        std::fflush(stdout);
+        std::_Exit(0);
     }
     int status = 0;
     while (::waitpid(child, &status, 0) < 0) {
@@ -116,6 +124,7 @@ class CaseRunner {
     /// In a process of its own.
     void run(std::uint64_t first, std::uint64_t end) const {
         limit_memory(options_.memory_limit_gb);
+        std::array<int, num_kinds> seen = {};
         for (std::uint64_t index = first; index < end; ++index) {
             board_.current = index;
             remove_case_files(folder_);
@@ -129,7 +138,8 @@ class CaseRunner {
             }
             allow_time(0.0);
             if (!outcome.defect.empty()) tell(index, outcome.defect);
-            count(outcome, index, index - first < warm_up_cases ? -1.0 : double(::mallinfo2().uordblks) - before);
+            const bool warm = ++seen[std::size_t(kind(index))] > warm_up_cases;
+            count(outcome, index, warm ? std::optional(double(::mallinfo2().uordblks) - before) : std::nullopt);
         }
     }
 
@@ -146,16 +156,16 @@ class CaseRunner {
                                            std::filesystem::copy_options::overwrite_existing);
     }
 
-    /// `heap_bytes` below 0 with its sign is a heap that shrank; of a case that is not measured, it is -1.
-    void count(const CaseOutcome& outcome, std::uint64_t index, double heap_bytes) const {
+    /// `heap_bytes`: what the case left on the heap, where that is known.
+    void count(const CaseOutcome& outcome, std::uint64_t index, const std::optional<double>& heap_bytes) const {
         KindCounts& counts = board_.kinds[std::size_t(kind(index))];
         ++counts.run;
         ++(!outcome.defect.empty() ? counts.defects : outcome.refused ? counts.refused : counts.results);
         board_.lost_paths += outcome.lost_paths;
         board_.paths += outcome.paths;
-        if (heap_bytes == -1.0) return;
+        if (!heap_bytes) return;
         ++counts.measured;
-        counts.heap_bytes += heap_bytes;
+        counts.heap_bytes += *heap_bytes;
     }
 
   private:
@@ -189,7 +199,11 @@ FuzzSummary run_forked(const FuzzOptions& options) {
     const WorkFolder folder;
     Board& board = *shared_board();
     // Nothing of the libraries' threads may live in this process when it forks.
-    if (const int status = in_child([&] { make_seed_files(folder.path()); }); status != 0)
+    const auto make_seeds = [&] {
+        allow_time(30.0 * options.cpu_limit_s);
+        make_seed_files(folder.path());
+    };
+    if (const int status = in_child(make_seeds); status != 0)
         throw std::runtime_error("the seed files could not be made: " + how_it_ended(status));
     const CaseRunner runner(options, folder.path(), board);
     const std::uint64_t end = options.first + options.cases;
@@ -202,7 +216,7 @@ FuzzSummary run_forked(const FuzzOptions& options) {
         }
         const CaseOutcome outcome = {false, how_it_ended(status), 0.0, 0.0};
         runner.tell(board.current, outcome.defect);
-        runner.count(outcome, board.current, -1.0);
+        runner.count(outcome, board.current, std::nullopt);
         next = board.current + 1;
     }
     print_summary(board);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mutations.h"
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <sstream>
 
@@ -88,17 +91,38 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// Puts another value behind a key.
-void change_value(std::string& line, CaseRandom& random) {
+/// Another number in place of one: scaled, of the other sign, or an end of what numbers can be.
+std::string odd_number(const std::string& number, CaseRandom& random) {
+    char* end = nullptr;
+    const double value = std::strtod(number.c_str(), &end);
+    const double odd = random.chance(0.5) ? value * random.pick({-1.0, 0.0, 0.1, 1.001, 3.0, 100.0, 1.0e6})
+                                          : random.pick({0.0, 1.0, 0.5, 1.0e-3, 1.0e-5, 90.0, 1.0e4, 9.9e6});
+    const bool whole = number.find_first_of(".e") == std::string::npos;
+    return whole && std::abs(odd) < 1.0e15 ? fmt::format("{}", std::llround(odd)) : fmt::format("{:#}", odd);
+}
+
+/// Puts another value behind a key: an odd one, or one that the key has in another text.
+void change_value(std::string& line, const std::vector<std::string>& other, CaseRandom& random) {
     const std::size_t equals = line.find("= ");
     if (equals == std::string::npos) return;
     const std::string key = line.substr(0, equals + 2), value = line.substr(equals + 2);
-    if (random.chance(0.7)) {
+    const std::size_t start = random.below(other.size());
+    const double way = double(uniform_float(random.word()));
+    for (std::size_t i = 0; way < 0.25 && i < other.size(); ++i)
+        if (const std::string& found = other[(start + i) % other.size()]; found.starts_with(key) && found != line) {
+            line = found;
+            return;
+        }
+    const std::size_t digit = value.find_first_of("0123456789", random.below(value.size() + 1));
+    if (way < 0.6 && digit != std::string::npos) {
+        const std::size_t begin = digit > 0 && value[digit - 1] == '-' ? digit - 1 : digit;
+        const std::size_t end = std::min(value.find_first_not_of("0123456789.e+-", digit), value.size());
+        line = key + value.substr(0, begin) + odd_number(value.substr(begin, end - begin), random) + value.substr(end);
+    } else if (way < 0.9) {
         line = key + random.pick(odd_values);
-        return;
+    } else {
+        line = key + random.pick({"-", "1", "0.", "100000", "1e", "[", "\""}) + value;
     }
-    // The same value, a few orders of magnitude or a sign away.
-    line = key + random.pick({"-", "1", "0.", "100000", "1e", "[", "\""}) + value;
 }
 
 void mutate_lines(std::vector<std::string>& lines, const std::vector<std::string>& other, CaseRandom& random) {
@@ -124,7 +148,7 @@ void mutate_lines(std::vector<std::string>& lines, const std::vector<std::string
         default:
             for (std::size_t i = 0; i < lines.size(); ++i)
                 if (std::string& line = lines[(at + i) % lines.size()]; line.find("= ") != std::string::npos) {
-                    change_value(line, random);
+                    change_value(line, other, random);
                     return;
                 }
     }
@@ -181,9 +205,29 @@ std::string mutated_bytes(std::string bytes, CaseRandom& random) {
     return bytes;
 }
 
+namespace {
+
+void drop_words_read_as_floats(Image& image) {
+    const std::size_t channels = image.channel_names.size();
+    std::vector<std::size_t> kept;
+    for (std::size_t c = 0; c < channels; ++c)
+        if (std::find(image.word_names.begin(), image.word_names.end(), image.channel_names[c]) == image.word_names.end())
+            kept.push_back(c);
+    std::vector<std::string> names;
+    for (const std::size_t c : kept) names.push_back(image.channel_names[c]);
+    std::vector<float> pixels;
+    for (std::size_t p = 0; p < image.pixels.size(); p += channels)
+        for (const std::size_t c : kept) pixels.push_back(image.pixels[p + c]);
+    image.channel_names = names;
+    image.pixels = pixels;
+}
+
+}  // namespace
+
 void write_mutated_picture(const std::filesystem::path& from, const std::filesystem::path& to, CaseRandom& random) {
     Image image = read_image(from);
     read_words(from, image);
+    drop_words_read_as_floats(image);
     const int count = random.pick({1, 1, 2});
     for (int i = 0; i < count; ++i) switch (random.below(7)) {
             case 0:

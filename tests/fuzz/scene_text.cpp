@@ -53,7 +53,8 @@ class SceneWriter {
         line("sampler = \"{}\"", random_.pick({"sobol", "stratified", "independent"}));
         line("filter = \"{}\"", random_.pick({"tent", "box", "gaussian", "blackman-harris"}));
         line("light_sampling = \"{}\"", random_.pick({"both", "connections", "scattering"}));
-        line("guided = {}", random_.chance(0.2));
+        guided_ = random_.chance(0.2);
+        line("guided = {}", guided_);
         if (random_.chance(0.3)) line("filter_radius_px = {}", random_.pick({0.01, 0.5, 3.0, 16.0}));
         if (random_.chance(0.3)) {
             const int x0 = random_.integer(0, width - 1);
@@ -130,10 +131,14 @@ class SceneWriter {
     double roughness() { return random_.pick({0.0, 0.001, 0.01, 0.1, 0.5, 1.0}); }
 
     void add_medium() {
-        line("medium.sigma_s_per_mm = {}", random_.pick({0.0, 0.1, 1.0, 30.0, 1.0e4}));
-        line("medium.sigma_a_per_mm = {}", random_.pick({0.0, 0.1, 1.0, 1.0e6}));
+        // Photons for guides, and flights through a grid, take a step per free path; the ends of what is allowed would take
+        // minutes.
+        const bool grid = random_.chance(0.3);
+        const bool thin = grid || guided_;
+        line("medium.sigma_s_per_mm = {}", random_.pick({0.0, 0.1, 1.0, 30.0, thin ? 30.0 : 1.0e4}));
+        line("medium.sigma_a_per_mm = {}", random_.pick({0.0, 0.1, 1.0, thin ? 100.0 : 1.0e6}));
         line("medium.asymmetry = {}", random_.pick({0.0, -0.99, 0.5, 0.99}));
-        if (random_.chance(0.3))
+        if (grid)
             line("medium.density_file = \"fields.vdb\"\nmedium.density_grid = \"sigma_a_scale\"\nmedium.density_scale = {}",
                  random_.pick({0.0, 1.0, 3.0}));
         if (random_.chance(0.3))
@@ -252,6 +257,7 @@ class SceneWriter {
 
     CaseRandom& random_;
     std::string text_, grains_;
+    bool guided_ = false;
     std::vector<Material> materials_;
 };
 
