@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "case_random.h"
+#include "entry_points.h"
 #include "mutations.h"
 #include "outcome.h"
 #include "program_run.h"
@@ -90,7 +91,9 @@ class Case {
         std::vector<std::string> flags = {"--spp", "1", "--time", "2s", "--set", "render.max_bounces=20"};
         for (const char* key : {"render.width=4", "render.height=3", "animation.frames=1"})
             flags.insert(flags.end(), {"--set", key});
-        return render_text(mutated_text(text, random_scene(other), random_), flags, true);
+        const std::string mutated = mutated_text(text, random_scene(other), random_);
+        check_scene_text(mutated);
+        return render_text(mutated, flags, true);
     }
 
     CaseOutcome build_text(const std::string& text, const std::vector<std::string>& flags) {
@@ -109,6 +112,7 @@ class Case {
         CaseRandom other(seed_, index_ + other_text);
         const std::string text = random_recipe(random_);
         const std::string mutated = mutated_text(text, random_recipe(other), random_);
+        check_recipe_text(mutated);
         std::vector<std::string> flags = {"--set", "grains.resolution=12"};
         if (mutated.find("sites.csv") == std::string::npos) flags.insert(flags.end(), {"--set", "grains.num_sites=20"});
         return build_text(mutated, flags);
@@ -161,7 +165,9 @@ class Case {
     }
 
     CaseOutcome resume() {
-        write_bytes(at("out.checkpoint"), mutated_bytes(read_bytes(folder_ / "still.checkpoint"), random_));
+        const std::string mutated = mutated_bytes(read_bytes(folder_ / "still.checkpoint"), random_);
+        check_checkpoint_bytes(mutated);
+        write_bytes(at("out.checkpoint"), mutated);
         std::filesystem::copy_file(folder_ / "out.checkpoint", folder_ / "case.checkpoint",
                                    std::filesystem::copy_options::overwrite_existing);
         if (program({"opal-render", at("still.toml"), "-o", at("out.exr"), "--threads", "1", "--spp", "4", "--resume", "--stats",

@@ -15,8 +15,8 @@ void judge_run(const ProgramRun& run, bool may_refuse, CaseOutcome& outcome);
 /// collisions above a majorant. Counts the lost paths.
 void judge_rendered(const std::filesystem::path& folder, CaseOutcome& outcome);
 
-/// Every value is a finite number; in a picture that was rendered here, variances, sample counts, depths and spectral radiance are
-/// not negative.
+/// Every value is a finite number; in a picture that was rendered here, variances, sample counts, depths and spectral radiance
+/// are not negative.
 void judge_picture(const std::filesystem::path& file, bool made_here, CaseOutcome& outcome);
 
 /// After an error there are no outputs but a checkpoint, nor temporary files.
