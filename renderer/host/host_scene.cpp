@@ -25,6 +25,15 @@ SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
 }
 
+/// Places are floats, finest about their origin: that is to be where the camera looks, wherever in the scene. In steps, so that
+/// scenes about their own origin stay as they are to the bit.
+std::array<double, 3> origin_near(const std::array<double, 3>& target_mm) {
+    constexpr double step_mm = 64.0;
+    std::array<double, 3> origin_mm;
+    for (std::size_t axis = 0; axis < 3; ++axis) origin_mm[axis] = step_mm * std::round(target_mm[axis] / step_mm);
+    return origin_mm;
+}
+
 /// Everything moved so that `origin_mm` becomes the origin.
 SceneDescription moved(SceneDescription scene, const std::array<double, 3>& origin_mm) {
     const auto move = [&](std::array<double, 3>& place_mm) {
@@ -103,9 +112,9 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
     return camera;
 }
 
-// Places are floats from here on, finest about the origin: that is where the camera looks, wherever in the scene.
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
-    : HostScene(moved(description, description.camera.target_mm), description.camera.target_mm, notices, opals) {}
+    : HostScene(moved(description, origin_near(description.camera.target_mm)), origin_near(description.camera.target_mm), notices,
+                opals) {}
 
 HostScene::HostScene(const SceneDescription& description, const std::array<double, 3>& origin_mm,
                      std::vector<std::string>& notices, OpalCache* opals)
