@@ -57,7 +57,6 @@ OPAL_HD inline Plastic<N> plastic_at(const MaterialView& material, const Spectru
     Plastic<N> plastic;
     plastic.roughness = material.roughness;
     plastic.coat_albedo = material.coat_albedo;
-    plastic.mean_coat_albedo = material.mean_coat_albedo;
     plastic.count = wavelengths.count;
     for (int i = 0; i < wavelengths.count; ++i) {
         plastic.eta[i] = table_at(material.index, wavelengths.wavelength_nm[i]) / interaction.index_before[i];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/bsdf.h"
+#include "renderer/core/camera_bodies.h"
 #include "renderer/core/interior.h"
 #include "renderer/core/scene_view.h"
 #include "renderer/core/surface_probe.h"
@@ -37,8 +38,7 @@ class PathTracer {
           wavelengths_(wavelengths),
           random_(random),
           counters_(counters),
-          spectra_(scene.spectra, wavelengths),
-          bodies_(scene.camera_bodies) {
+          spectra_(scene.spectra, wavelengths) {
         weights_.count = wavelengths.count;
     }
 
@@ -46,10 +46,12 @@ class PathTracer {
     /// Fresnel factor: reflections of the lights are far brighter than what is inside, and leaving them to chance is most of the
     /// noise.
     OPAL_HD PathResult<N> trace(const Ray& camera) {
+        const NestedBodies start = bodies_at_start(scene_, intersector_, camera);
+        bodies_ = start;
         follow(camera, 0);
         if (reflection_pending_) {
             weights_ = reflection_weights_;
-            bodies_ = scene_.camera_bodies;
+            bodies_ = start;
             connected_ = false;
             follow(reflection_, 1);
         }

@@ -21,9 +21,41 @@ OPAL_HD inline float mean_fresnel(float eta) {
                  8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0) * (n4 - 1.0)) * log(n));
 }
 
-/// What a rough coat reflects by itself, over the square root of the cosine of the incoming light: entries at equal steps from 0
-/// to 1. Host: renderer/host/coat_albedo.h.
-inline constexpr int coat_albedo_samples = 33;
+/// What a rough coat reflects by itself, over its index relative to what is before it and the square root of the cosine of the
+/// incoming light: entries at equal steps from 0 to 1. Host: renderer/host/coat_albedo.h.
+inline constexpr int coat_albedo_samples = 65;
+struct CoatAlbedoView {
+    const float* eta = nullptr;    ///< rising; between two of them values are interpolated
+    const float* value = nullptr;  ///< coat_albedo_samples for each
+    const float* mean = nullptr;   ///< weighted by the cosine, for each
+    int count = 0;
+
+    /// The last entry whose eta is not above, the first one at least; `part`: of the way to the next.
+    OPAL_HD int row(float relative_index, float& part) const {
+        int low = 0;
+        for (int high = count - 1; high - low > 1;) {
+            const int middle = (low + high) / 2;
+            (eta[middle] <= relative_index ? low : high) = middle;
+        }
+        part = 0.0f;
+        if (count > 1) part = max_of(0.0f, min_of(1.0f, (relative_index - eta[low]) / (eta[low + 1] - eta[low])));
+        return low;
+    }
+    OPAL_HD float mean_at(float relative_index) const {
+        float part;
+        const int i = row(relative_index, part);
+        return part > 0.0f ? mean[i] + part * (mean[i + 1] - mean[i]) : mean[i];
+    }
+    OPAL_HD float at(float relative_index, float cosine) const {
+        float part;
+        const int i = row(relative_index, part);
+        const float place = sqrtf(min_of(1.0f, cosine)) * float(coat_albedo_samples - 1);
+        const int j = min_of(int(place), coat_albedo_samples - 2);
+        const auto along = [&](const float* entry) { return entry[j] + (place - float(j)) * (entry[j + 1] - entry[j]); };
+        const float low = along(value + i * coat_albedo_samples);
+        return part > 0.0f ? low + part * (along(value + (i + 1) * coat_albedo_samples) - low) : low;
+    }
+};
 
 /// Its surface at the wavelengths of a path. What the coat lets in is scattered by the base, turned back in part by the coat from
 /// below, scattered again, and so on; with E(v) the part of light along v that the coat reflects at once (Fresnel's F where it is
@@ -32,11 +64,10 @@ inline constexpr int coat_albedo_samples = 33;
 /// B the part that the coat reflects back down. With the coat's reflection a white base (a = 1) gives 1 in every direction.
 template <int N>
 struct Plastic {
-    float roughness = 0.0f;              ///< GGX alpha of the coat; below min_roughness: smooth
-    float eta[N];                        ///< index of the coat over the index before it
-    float albedo[N];                     ///< of the base
-    const float* coat_albedo = nullptr;  ///< E of a rough coat, coat_albedo_samples; null where it is smooth
-    float mean_coat_albedo = 0.0f;       ///< cosine-weighted mean of it
+    float roughness = 0.0f;      ///< GGX alpha of the coat; below min_roughness: smooth
+    float eta[N];                ///< index of the coat over the index before it
+    float albedo[N];             ///< of the base
+    CoatAlbedoView coat_albedo;  ///< E of a rough coat
     int count = N;
 
     OPAL_HD bool smooth() const { return roughness < min_roughness; }
@@ -86,10 +117,7 @@ struct Plastic {
 
     /// E, see above.
     OPAL_HD float coat_reflectance(float cosine, int lane) const {
-        if (smooth()) return reflectance(cosine, lane);
-        const float place = sqrtf(min_of(1.0f, cosine)) * float(coat_albedo_samples - 1);
-        const int i = min_of(int(place), coat_albedo_samples - 2);
-        return coat_albedo[i] + (place - float(i)) * (coat_albedo[i + 1] - coat_albedo[i]);
+        return smooth() ? reflectance(cosine, lane) : coat_albedo.at(eta[lane], cosine);
     }
 
     /// Probability of choosing the coat: its part of what is sent back, the mean over the lanes. As it is the same whichever lane
@@ -117,7 +145,7 @@ struct Plastic {
             value.pdf += chance * ggx.visible_density(out, half) / (4.0f * cosine);
         }
         for (int i = 0; i < count; ++i) {
-            const float mean = smooth() ? mean_fresnel(eta[i]) : mean_coat_albedo;
+            const float mean = smooth() ? mean_fresnel(eta[i]) : coat_albedo.mean_at(eta[i]);
             const float below = 1.0f - (1.0f - mean) / square(eta[i]);
             const float base = (1.0f - coat_reflectance(out.z, i)) * (1.0f - coat_reflectance(in.z, i)) * albedo[i] /
                                (square(eta[i]) * (1.0f - albedo[i] * below));

@@ -90,7 +90,8 @@ struct SceneView {
     const OpalView* bodies = nullptr;  ///< in the order of their priorities, the highest last
     const MeshView* meshes = nullptr;
     const MaterialView* materials = nullptr;
-    NestedBodies camera_bodies;  ///< where the camera stands
+    NestedBodies camera_bodies;  ///< that all rays of the camera start in
+    NestedBodies cut_bodies;     ///< that some of its rays start in, see camera_bodies.h
     int width = 0, height = 0;
     int max_bounces = 64;
     int wavelengths = 4;  ///< 1 + companions
@@ -103,7 +104,7 @@ struct SceneView {
 struct RayHit {
     float distance_mm = 0.0f;
     uint32_t mesh = 0;
-    uint32_t triangle = 0;
+    uint32_t triangle = 0;     ///< of an exact surface: the piece
     float u = 0.0f, v = 0.0f;  ///< barycentric; on an exact surface the patch's parameters
 };
 
@@ -117,7 +118,7 @@ struct Surface {
 };
 
 OPAL_HD inline Surface patch_surface_at(const MeshView& mesh, const RayHit& hit) {
-    const BezierPatch& patch = mesh.patches.patches[mesh.patches.patch_of_triangle[hit.triangle]];
+    const BezierPatch& patch = mesh.patches.patches[mesh.patches.pieces[hit.triangle].patch];
     const BezierPoint point = evaluate_bezier(patch, double(hit.u), double(hit.v));
     Surface surface;
     surface.position = {float(point.position_mm[0]), float(point.position_mm[1]), float(point.position_mm[2])};

@@ -3,6 +3,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,24 +27,81 @@ void fill_ray(RTCRay& target, const Ray& ray) {
     target.flags = 0;
 }
 
+/// Bounds of a piece: those of its control points, and a float's rounding.
+void piece_bounds(const RTCBoundsFunctionArguments* call) {
+    const auto& mesh = *static_cast<const MeshData*>(call->geometryUserPtr);
+    float low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        for (const auto& row : mesh.pieces[call->primID].control_mm[axis])
+            for (const double coordinate : row) {
+                least = std::min(least, coordinate);
+                most = std::max(most, coordinate);
+            }
+        const double rounding = 1.0e-6 * (1.0e-3 + std::max(std::abs(least), std::abs(most)));
+        low[axis] = float(least - rounding);
+        high[axis] = float(most + rounding);
+    }
+    *call->bounds_o = {low[0], low[1], low[2], 0.0f, high[0], high[1], high[2], 0.0f};
+}
+
+/// Asked for one ray at a time.
+PatchHit hit_on_piece(void* mesh, unsigned piece, const RTCRay& ray) {
+    return meet_piece(static_cast<const MeshData*>(mesh)->pieces[piece],
+                      {{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}}, ray.tfar);
+}
+
+void intersect_piece(const RTCIntersectFunctionNArguments* call) {
+    if (call->valid[0] == 0) return;
+    auto& query = *reinterpret_cast<RTCRayHit*>(call->rayhit);
+    const PatchHit met = hit_on_piece(call->geometryUserPtr, call->primID, query.ray);
+    if (!met.met) return;
+    query.ray.tfar = met.distance_mm;
+    query.hit.u = met.u;
+    query.hit.v = met.v;
+    query.hit.geomID = call->geomID;
+    query.hit.primID = call->primID;
+    query.hit.instID[0] = call->context->instID[0];
+}
+
+void occlude_by_piece(const RTCOccludedFunctionNArguments* call) {
+    if (call->valid[0] == 0) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(call->ray);
+    if (hit_on_piece(call->geometryUserPtr, call->primID, ray).met) ray.tfar = -std::numeric_limits<float>::infinity();
+}
+
 }  // namespace
 
-EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) : meshes_(meshes) {
+RTCGeometry EmbreeScene::triangles(const MeshData& mesh) const {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Copied into Embree's own buffers: it reads 16 bytes at the last vertex.
+    auto* positions = static_cast<Vec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                        3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
+    if (!positions || !indices) throw SystemError("Embree: out of memory");
+    std::copy(mesh.positions.begin(), mesh.positions.end(), positions);
+    std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
+    return geometry;
+}
+
+RTCGeometry EmbreeScene::exact_surface(const MeshData& mesh) const {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, unsigned(mesh.pieces.size()));
+    rtcSetGeometryUserData(geometry, const_cast<MeshData*>(&mesh));
+    rtcSetGeometryBoundsFunction(geometry, piece_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_piece);
+    rtcSetGeometryOccludedFunction(geometry, occlude_by_piece);
+    return geometry;
+}
+
+EmbreeScene::EmbreeScene(const std::vector<MeshData>& meshes) {
     device_ = rtcNewDevice(nullptr);
     if (!device_) throw SystemError("Embree could not be started");
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     for (const MeshData& mesh : meshes) {
-        exact_ = exact_ || !mesh.patches.empty();
-        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        // Copied into Embree's own buffers: it reads 16 bytes at the last vertex.
-        auto* positions = static_cast<Vec3*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
-        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                            3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
-        if (!positions || !indices) throw SystemError("Embree: out of memory");
-        std::copy(mesh.positions.begin(), mesh.positions.end(), positions);
-        std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
+        RTCGeometry geometry = mesh.patches.empty() ? triangles(mesh) : exact_surface(mesh);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
@@ -60,38 +118,19 @@ EmbreeScene::~EmbreeScene() {
 }
 
 bool EmbreeScene::closest(const Ray& ray, RayHit& hit) const {
-    float nearest_mm = 0.0f;
-    while (true) {
-        RTCRayHit query;
-        fill_ray(query.ray, ray);
-        query.ray.tnear = nearest_mm;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_, &context, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-        hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
-        const MeshData& mesh = meshes_[hit.mesh];
-        if (mesh.patches.empty()) return true;
-        const PatchHit exact = hit_on_patch(mesh.patch_view(), mesh.indices.data() + 3 * std::size_t(hit.triangle), ray,
-                                            hit.triangle, {hit.u, hit.v, hit.distance_mm, true});
-        if (exact.met) {
-            hit.u = exact.u;
-            hit.v = exact.v;
-            hit.distance_mm = exact.distance_mm;
-            return true;
-        }
-        // The triangle is not the surface: on behind it.
-        nearest_mm = std::nextafter(hit.distance_mm * (1.0f + 1.0e-6f), std::numeric_limits<float>::infinity());
-    }
+    RTCRayHit query;
+    fill_ray(query.ray, ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+    return true;
 }
 
 bool EmbreeScene::occluded(const Ray& ray, float max_mm) const {
-    if (exact_) {
-        RayHit hit;
-        return closest(ray, hit) && hit.distance_mm < max_mm;
-    }
     RTCRay query;
     fill_ray(query, ray);
     query.tfar = max_mm;

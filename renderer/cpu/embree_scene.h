@@ -10,7 +10,7 @@
 
 namespace opal {
 
-/// Rays against the scene's triangles on the CPU. Safe to use from many threads.
+/// Rays against the scene's triangles and patches on the CPU. Safe to use from many threads.
 class EmbreeScene {
   public:
     /// The meshes must outlive the object.
@@ -25,10 +25,11 @@ class EmbreeScene {
     bool occluded(const Ray& ray, float max_mm) const;
 
   private:
+    RTCGeometry triangles(const MeshData& mesh) const;
+    RTCGeometry exact_surface(const MeshData& mesh) const;
+
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
-    const std::vector<MeshData>& meshes_;
-    bool exact_ = false;  ///< some surfaces are patches
 };
 
 }  // namespace opal

@@ -25,23 +25,20 @@ void add_counters(PathCounters& sum, const PathCounters& part) {
     sum.majorant_violations += part.majorant_violations;
 }
 
-/// Adds the samples [block.end_sample, end) to a block's pixels.
+/// Adds the next sample to each of a block's pixels. Sample by sample over the block: its totals are then added up in the same
+/// order however samples are cut into passes.
 template <int N>
-void trace_block(const SceneView& view, const EmbreeScene& intersector, const PixelWindow& pixels, std::uint32_t end, Film& film,
-                 FilmBlock& block) {
+void trace_block(const SceneView& view, const EmbreeScene& intersector, const PixelWindow& pixels, Film& film, FilmBlock& block) {
     const PixelWindow& window = film.window();
-    // Sample by sample over the block: its totals are then added up in the same order however samples are cut into passes.
-    for (std::uint32_t sample = block.end_sample; sample < end; ++sample)
-        for (int y = pixels.y0; y < pixels.y1; ++y)
-            for (int x = pixels.x0; x < pixels.x1; ++x) {
-                // A path's random numbers belong to its pixel of the whole picture, so that a part of it shows the same.
-                const std::uint32_t pixel =
-                    std::uint32_t(window.y0 + y) * std::uint32_t(view.width) + std::uint32_t(window.x0 + x);
-                PathWavelengths<N> wavelengths;
-                const PathResult<N> result = trace_sample(view, intersector, pixel, sample, wavelengths, block.counters);
-                film.add(view.spectra, std::uint32_t(y * film.width() + x), film_sample(wavelengths, result), block.totals);
-            }
-    block.end_sample = end;
+    for (int y = pixels.y0; y < pixels.y1; ++y)
+        for (int x = pixels.x0; x < pixels.x1; ++x) {
+            // A path's random numbers belong to its pixel of the whole picture, so that a part of it shows the same.
+            const std::uint32_t pixel = std::uint32_t(window.y0 + y) * std::uint32_t(view.width) + std::uint32_t(window.x0 + x);
+            PathWavelengths<N> wavelengths;
+            const PathResult<N> result = trace_sample(view, intersector, pixel, block.end_sample, wavelengths, block.counters);
+            film.add(view.spectra, std::uint32_t(y * film.width() + x), film_sample(wavelengths, result), block.totals);
+        }
+    ++block.end_sample;
 }
 
 using BlockTracer = decltype(&trace_block<1>);
@@ -94,7 +91,8 @@ class RenderRun {
         while (!interrupt_requested()) {
             const std::uint32_t done = least_end();
             if (done >= std::uint32_t(limits_.samples)) break;
-            if (limits_.time_s > 0.0 && done > start && watch_.seconds() >= limits_.time_s) break;
+            whole_ = done > film_.first_sample();
+            if (stops()) break;
             pass(next_target(done, done - start));
             begin_noise();
         }
@@ -114,6 +112,10 @@ class RenderRun {
     }
 
   private:
+    /// Whether to stop where one is, between two samples of a block: on request at once; for the time once there is a whole
+    /// picture.
+    bool stops() const { return interrupt_requested() || (whole_ && limits_.time_s > 0.0 && watch_.seconds() >= limits_.time_s); }
+
     std::int64_t work_left(const FilmBlock& block) const {
         return block.settled ? 0 : std::max<std::int64_t>(0, std::int64_t(limits_.samples) - block.end_sample);
     }
@@ -136,7 +138,7 @@ class RenderRun {
 
     void pass(std::uint32_t target) {
         tbb::parallel_for(tbb::blocked_range<int>(0, film_.num_blocks(), 1), [&](const tbb::blocked_range<int>& range) {
-            for (int b = range.begin(); b != range.end() && !interrupt_requested(); ++b) {
+            for (int b = range.begin(); b != range.end() && !stops(); ++b) {
                 advance(b, target);
                 const double by_time = limits_.time_s > 0.0 ? watch_.seconds() / limits_.time_s : 0.0;
                 progress_({std::min(1.0, std::max(double(work_done_) / double(total_work_), by_time)),
@@ -166,9 +168,9 @@ class RenderRun {
         const std::scoped_lock lock(block.lock);
         const std::int64_t work_before = work_left(block);
         const std::uint32_t samples_before = block.end_sample;
-        while (!block.settled && block.end_sample < target) {
+        while (!block.settled && block.end_sample < target && !stops()) {
             const std::uint32_t first = film_.first_sample(), look = first + next_noise_look(block.end_sample - first);
-            trace_(guides_.scene(), intersector_, film_.block_window(index), std::min(target, look), film_, block);
+            trace_(guides_.scene(), intersector_, film_.block_window(index), film_, block);
             if (block.end_sample == look && film_.noise_floor() >= 0.0) look_at_noise(film_, index, limits_.noise);
         }
         const PixelWindow window = film_.block_window(index);
@@ -184,6 +186,7 @@ class RenderRun {
     const BlockTracer trace_;
     const bool groups_whole_;
     const Stopwatch watch_;
+    bool whole_ = false;  ///< every pixel has a sample
     std::int64_t total_work_ = 0;
     std::atomic<std::int64_t> work_done_ = 0;
     std::atomic<std::int64_t> new_paths_ = 0;

@@ -13,7 +13,7 @@ namespace opal {
 
 struct RenderLimits {
     int samples = 256;    ///< per pixel: its samples from the film's first up to this one, not counted, are drawn
-    double time_s = 0.0;  ///< stop after this long (a started pass is finished); 0: no limit
+    double time_s = 0.0;  ///< stop after this long, but not before every pixel has a sample; 0: no limit
     double noise = 0.0;   ///< a block ends when its luminance and its chroma are as quiet as this, see film_noise.h; 0: none does
 };
 
@@ -33,8 +33,8 @@ struct RenderProgress {
 };
 
 /// Renders a scene on all CPU cores, going on from what the film holds: TBB over the film's blocks, pass after pass, so that
-/// whatever ends it leaves a whole picture. The film's content depends on the scene and the limits alone, not on threads, passes
-/// or interruptions. `progress` is called from all threads.
+/// whatever ends it leaves a picture; blocks then have sample counts of their own. The film's content depends on the scene and
+/// the limits alone, not on threads, passes or interruptions. `progress` is called from all threads.
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
                          const std::function<void(const RenderProgress&)>& progress);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/host/coat_albedo.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderer/core/fresnel.h"
@@ -24,24 +25,41 @@ double albedo_at(const Ggx& ggx, float eta, float cosine) {
     return sum / (strata * strata);
 }
 
-}  // namespace
-
-CoatAlbedo make_coat_albedo(float roughness, float eta) {
-    const Ggx ggx{roughness};
-    CoatAlbedo table;
-    for (int i = 0; i < coat_albedo_samples; ++i) {
-        const float root = float(i) / (coat_albedo_samples - 1);
-        table.value[std::size_t(i)] = float(albedo_at(ggx, eta, std::fmax(1.0e-4f, root * root)));
-    }
-    // Cosine-weighted mean of a function that is linear in r = sqrt(cos) between the samples: integral of E 4 r^3 dr.
+/// Cosine-weighted mean of a function that is linear in r = sqrt(cos) between the samples: integral of E 4 r^3 dr.
+float mean_of(const std::vector<float>& values) {
     double mean = 0.0;
-    for (int i = 0; i + 1 < coat_albedo_samples; ++i) {
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
         const double a = double(i) / (coat_albedo_samples - 1), b = double(i + 1) / (coat_albedo_samples - 1);
-        const double low = double(table.value[std::size_t(i)]), high = double(table.value[std::size_t(i) + 1]);
+        const double low = double(values[i]), high = double(values[i + 1]);
         const double fourth = std::pow(b, 4) - std::pow(a, 4), fifth = 0.8 * (std::pow(b, 5) - std::pow(a, 5));
         mean += low * fourth + (high - low) / (b - a) * (fifth - a * fourth);
     }
-    table.mean = float(mean);
+    return float(mean);
+}
+
+}  // namespace
+
+CoatAlbedo make_coat_albedo(float roughness, std::span<const EtaRange> ranges) {
+    // Between two entries of one medium, interpolation is off by less than the sums.
+    constexpr float widest_step = 0.01f;
+    const Ggx ggx{roughness};
+    CoatAlbedo table;
+    for (const EtaRange& range : ranges) {
+        const int steps = int(std::ceil((range.most - range.least) / widest_step));
+        for (int i = 0; i <= steps; ++i)
+            table.eta.push_back(steps == 0 ? range.least : range.least + (range.most - range.least) * float(i) / float(steps));
+    }
+    std::sort(table.eta.begin(), table.eta.end());
+    table.eta.erase(std::unique(table.eta.begin(), table.eta.end()), table.eta.end());
+    for (const float eta : table.eta) {
+        std::vector<float> values;
+        for (int i = 0; i < coat_albedo_samples; ++i) {
+            const float root = float(i) / (coat_albedo_samples - 1);
+            values.push_back(float(albedo_at(ggx, eta, std::fmax(1.0e-4f, root * root))));
+        }
+        table.value.insert(table.value.end(), values.begin(), values.end());
+        table.mean.push_back(mean_of(values));
+    }
     return table;
 }
 

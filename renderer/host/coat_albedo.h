@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <span>
+#include <vector>
 
 #include "renderer/core/plastic.h"
 
 namespace opal {
 
-/// What a rough coat of relative index `eta` reflects by itself; see Plastic.
+/// What a rough coat reflects by itself against everything that may be before it; see Plastic.
 struct CoatAlbedo {
-    std::array<float, coat_albedo_samples> value = {};
-    float mean = 0.0f;
+    std::vector<float> eta, value, mean;
+
+    CoatAlbedoView view() const { return {eta.data(), value.data(), mean.data(), int(eta.size())}; }
 };
 
-/// By stratified sums over the visible normals, good to 1e-3. `roughness` from min_roughness.
-CoatAlbedo make_coat_albedo(float roughness, float eta);
+/// Indices of the coat relative to one medium before it: least and most over the wavelengths.
+struct EtaRange {
+    float least = 1.0f, most = 1.0f;
+};
+
+/// For the indices that occur, from min_roughness: by stratified sums over the visible normals, good to 1e-3.
+CoatAlbedo make_coat_albedo(float roughness, std::span<const EtaRange> ranges);
 
 }  // namespace opal

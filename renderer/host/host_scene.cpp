@@ -10,6 +10,7 @@
 #include "formats/error.h"
 #include "formats/units.h"
 #include "renderer/host/enclosure.h"
+#include "renderer/host/mesh_contact.h"
 #include "renderer/host/mesh_file.h"
 #include "renderer/host/mesh_topology.h"
 
@@ -22,6 +23,30 @@ Vec3 to_vec3(const std::array<double, 3>& v) {
 
 SampledSpectrum illuminant_of(const EnvironmentDescription& environment) {
     return illuminant_spectrum(environment.illuminant, environment.temperature_k, environment.illuminant_file);
+}
+
+/// Places are floats, finest about their origin: that is to be where the camera looks, wherever in the scene. In steps, so that
+/// scenes about their own origin stay as they are to the bit.
+std::array<double, 3> origin_near(const std::array<double, 3>& target_mm) {
+    constexpr double step_mm = 64.0;
+    std::array<double, 3> origin_mm;
+    for (std::size_t axis = 0; axis < 3; ++axis) origin_mm[axis] = step_mm * std::round(target_mm[axis] / step_mm);
+    return origin_mm;
+}
+
+/// Everything moved so that `origin_mm` becomes the origin.
+SceneDescription moved(SceneDescription scene, const std::array<double, 3>& origin_mm) {
+    const auto move = [&](std::array<double, 3>& place_mm) {
+        for (std::size_t axis = 0; axis < 3; ++axis) place_mm[axis] -= origin_mm[axis];
+    };
+    for (LightDescription& light : scene.lights) {
+        move(light.position_mm);
+        move(light.target_mm);
+    }
+    for (ObjectDescription& object : scene.objects) move(object.translate_mm);
+    move(scene.camera.position_mm);
+    move(scene.camera.target_mm);
+    return scene;
 }
 
 /// Wavelengths are drawn for all the light there is where the camera looks.
@@ -88,6 +113,11 @@ Camera make_camera(const CameraDescription& description, int width, int height) 
 }
 
 HostScene::HostScene(const SceneDescription& description, std::vector<std::string>& notices, OpalCache* opals)
+    : HostScene(moved(description, origin_near(description.camera.target_mm)), origin_near(description.camera.target_mm), notices,
+                opals) {}
+
+HostScene::HostScene(const SceneDescription& description, const std::array<double, 3>& origin_mm,
+                     std::vector<std::string>& notices, OpalCache* opals)
     : environment_(make_environment(description.environment, description.color.upsampling, &notices)),
       lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
       spectra_(make_spectra(description, environment_, lights_)),
@@ -95,7 +125,6 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     tables_s_ = watch_.seconds();
     for (const MaterialDescription& material : description.materials)
         material_data_.emplace_back(material, spectra_.upsampling, description.opal.dispersion);
-    for (const MaterialData& material : material_data_) materials_.push_back(material.view());
     OpalCache own;
     for (const ObjectDescription& object : description.objects) {
         if (object.kind == ObjectKind::opal)
@@ -106,12 +135,17 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
     const RenderDescription& render = description.render;
     view_.camera = make_camera(description.camera, render.width, render.height);
     order_bodies();
+    place_camera(render);
+    for (MaterialData& material : material_data_) {
+        material.prepare_coat(bodies_);
+        materials_.push_back(material.view());
+    }
     for (const MeshData& mesh : meshes_) mesh_views_.push_back(mesh.view());
     view_.bodies = bodies_.data();
     view_.spectra = spectra_.view();
     view_.environment = environment_.view();
     view_.lights = lights_.view();
-    require_lights_outside(description.lights);
+    require_lights_outside(description.lights, origin_mm);
     view_.meshes = mesh_views_.data();
     view_.materials = materials_.data();
     view_.width = render.width;
@@ -164,17 +198,44 @@ void HostScene::order_bodies() {
         OpalView& body = bodies_[mesh.body];
         for (const MeshData& other : meshes_)
             if (&other != &mesh && reaches_inside(other, body)) body.shape.grid = nullptr;
-        if (encloses(mesh, view_.camera.position)) view_.camera_bodies = view_.camera_bodies.entered(mesh.body);
     }
 }
 
-void HostScene::require_lights_outside(const std::vector<LightDescription>& lights) const {
+/// Tells which bodies the camera's rays start in: alike for all of them where no surface cuts the places they start at.
+void HostScene::place_camera(const RenderDescription& render) {
+    const Camera& camera = view_.camera;
+    const Vec3 x = normalize(camera.right), y = normalize(camera.down);
+    const float outside_px = float(std::max(0.5, render.filter_radius_px));  // a filter draws rays beyond the picture's edge
+    float half_x = camera.aperture_radius_mm, half_y = camera.aperture_radius_mm;
+    if (camera.orthographic) {
+        half_x += (0.5f + outside_px / float(render.width)) * length(camera.right);
+        half_y += (0.5f + outside_px / float(render.height)) * length(camera.down);
+    }
+    for (const MeshData& mesh : meshes_) {
+        if (mesh.body < 0) continue;
+        // Where the lens is a point, none of its rays differ.
+        if (half_x > 0.0f && touches_rectangle(mesh, camera.position, half_x * x, half_y * y, mesh.deviation_mm))
+            view_.cut_bodies = view_.cut_bodies.entered(mesh.body);
+        else if (encloses(mesh, camera.position))
+            view_.camera_bodies = view_.camera_bodies.entered(mesh.body);
+    }
+}
+
+void HostScene::require_lights_outside(const std::vector<LightDescription>& lights,
+                                       const std::array<double, 3>& origin_mm) const {
     for (std::size_t i = 0; i < lights.size(); ++i)
-        for (const MeshData& mesh : meshes_)
-            if (lights[i].kind != LightKind::sun && mesh.body >= 0 && encloses(mesh, to_vec3(lights[i].position_mm)))
+        for (const MeshData& mesh : meshes_) {
+            if (lights[i].kind == LightKind::sun || mesh.body < 0) continue;
+            const LightGeometry& geometry = view_.lights.lights[i].geometry;
+            const bool touches = touches_light(mesh, geometry);
+            if (touches || encloses(mesh, geometry.position))
                 throw InputError(
-                    fmt::format("light.{}: stands at [{}, {}, {}] inside a transparent object; lights must be outside", i,
-                                lights[i].position_mm[0], lights[i].position_mm[1], lights[i].position_mm[2]));
+                    fmt::format("light.{}: {} [{:.9g}, {:.9g}, {:.9g}] {} a transparent object; lights must be outside, with all "
+                                "of their size",
+                                i, touches ? "the light at" : "stands at", lights[i].position_mm[0] + origin_mm[0],
+                                lights[i].position_mm[1] + origin_mm[1], lights[i].position_mm[2] + origin_mm[2],
+                                touches ? "reaches into" : "inside"));
+        }
 }
 
 const std::string& HostScene::recipe_toml() const {

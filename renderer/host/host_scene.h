@@ -10,8 +10,8 @@
 #include "renderer/core/scene_view.h"
 #include "renderer/host/environment_map.h"
 #include "renderer/host/glass_body.h"
-#include "renderer/host/material_data.h"
 #include "renderer/host/light_data.h"
+#include "renderer/host/material_data.h"
 #include "renderer/host/mesh_data.h"
 #include "renderer/host/opal_cache.h"
 #include "renderer/host/spectrum_tables.h"
@@ -46,13 +46,17 @@ class HostScene {
     const std::string& recipe_toml() const;
 
   private:
+    /// `description`: about the place `origin_mm` of the scene.
+    HostScene(const SceneDescription& description, const std::array<double, 3>& origin_mm, std::vector<std::string>& notices,
+              OpalCache* opals);
     void add_opal(const ObjectDescription& object, std::shared_ptr<const OpalBody> opal);
     void add_body(const OpalView& view, int priority);
     void order_bodies();
+    void place_camera(const RenderDescription& render);
     void add_mesh(const ObjectDescription& object, const SceneDescription& scene, std::vector<std::string>& notices);
     void add_glass(const ObjectDescription& object, const MaterialDescription& material, const OpalDescription& settings,
                    MeshData mesh);
-    void require_lights_outside(const std::vector<LightDescription>& lights) const;
+    void require_lights_outside(const std::vector<LightDescription>& lights, const std::array<double, 3>& origin_mm) const;
 
     const Stopwatch watch_;
     EnvironmentMap environment_;

@@ -44,8 +44,23 @@ MaterialData::MaterialData(const MaterialDescription& material, UpsamplingMethod
         model_ = MaterialModel::plastic;
         for (int i = 0; i < spectrum_samples; ++i)
             index_.push_back(float(material.n.at(dispersion == Dispersion::full ? units::wavelength_min_nm + i : sodium_d_nm)));
-        if (roughness_ >= min_roughness) coat_ = make_coat_albedo(roughness_, float(material.n.at(sodium_d_nm)));
     }
+}
+
+void MaterialData::prepare_coat(std::span<const OpalView> bodies) {
+    if (model_ != MaterialModel::plastic || roughness_ < min_roughness) return;
+    // Just as the transport divides them.
+    const auto range_against = [&](const float* index_before) {
+        EtaRange range{1.0e9f, 0.0f};
+        for (int i = 0; i < spectrum_samples; ++i) {
+            const float eta = index_[std::size_t(i)] / (index_before ? index_before[i] : 1.0f);
+            range = {std::min(range.least, eta), std::max(range.most, eta)};
+        }
+        return range;
+    };
+    std::vector<EtaRange> ranges = {range_against(nullptr)};
+    for (const OpalView& body : bodies) ranges.push_back(range_against(body.surface_index));
+    coat_ = make_coat_albedo(roughness_, ranges);
 }
 
 MaterialView MaterialData::view() const {
@@ -55,8 +70,7 @@ MaterialView MaterialData::view() const {
     view.roughness = roughness_;
     view.index = index_.data();
     view.extinction = extinction_.data();
-    view.coat_albedo = coat_.value.data();
-    view.mean_coat_albedo = coat_.mean;
+    view.coat_albedo = coat_.view();
     return view;
 }
 

@@ -16,18 +16,14 @@ struct MeshData {
     std::vector<std::uint32_t> indices;
     int material = -1;
     int body = -1;
-    std::vector<BezierPatch> patches;  ///< world space: the surface itself; empty where the triangles are it
-    std::vector<std::uint32_t> patch_of_triangle;
-    std::vector<float> patch_parameters;                 ///< u, v per vertex
-    float patch_reach_mm = 0.0f, patch_slack_mm = 0.0f;  ///< see PatchMeshView
+    std::vector<BezierPatch> patches;  ///< world space: the surface itself, the triangles are near it; empty where they are it
+    std::vector<PatchPiece> pieces;    ///< of the patches
+    float deviation_mm = 0.0f;         ///< how far the triangles may be from the surface
 
     MeshView view() const {
         return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material, body, patch_view()};
     }
-    PatchMeshView patch_view() const {
-        return {patches.empty() ? nullptr : patches.data(), patch_of_triangle.data(), patch_parameters.data(), patch_reach_mm,
-                patch_slack_mm};
-    }
+    PatchMeshView patch_view() const { return {patches.empty() ? nullptr : patches.data(), pieces.data()}; }
 };
 
 /// A square of edge `size_mm` at z = 0, facing up.

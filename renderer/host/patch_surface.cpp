@@ -8,8 +8,10 @@
 namespace opal {
 namespace {
 
-/// Of the body's size: how far triangles may be off, which is where their outline may show.
-constexpr double chord_part = 1.0e-4;
+/// Of the body's size: how far triangles may be off. They are not seen, but tell what lies inside.
+constexpr double chord_part = 1.0e-3;
+/// Of the body's size: how flat pieces are, so that a ray seldom meets one twice.
+constexpr double piece_part = 4.0e-3;
 
 /// Control points are mapped as points are: an affine map of a patch is the patch of the mapped points.
 BezierPatch mapped(const BezierPatch& patch, const RigidTransform& transform) {
@@ -75,7 +77,6 @@ double size_mm(const std::vector<BezierPatch>& patches) {
 /// All patches are divided alike, so that points on shared edges are equal bit by bit.
 void add_patch(const BezierPatch& patch, int parts, MeshData& mesh) {
     const auto first = std::uint32_t(mesh.positions.size());
-    const auto number = std::uint32_t(mesh.patches.size());
     mesh.patches.push_back(patch);
     for (int i = 0; i <= parts; ++i)
         for (int j = 0; j <= parts; ++j) {
@@ -85,7 +86,6 @@ void add_patch(const BezierPatch& patch, int parts, MeshData& mesh) {
             double position[3];
             bezier_sum(patch, weight_u.value, weight_v.value, position);
             mesh.positions.push_back({float(position[0]), float(position[1]), float(position[2])});
-            mesh.patch_parameters.insert(mesh.patch_parameters.end(), {float(u), float(v)});
         }
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const auto same = [&](std::uint32_t p, std::uint32_t q) {
@@ -94,7 +94,6 @@ void add_patch(const BezierPatch& patch, int parts, MeshData& mesh) {
         };
         if (same(a, b) || same(b, c) || same(c, a)) return;
         mesh.indices.insert(mesh.indices.end(), {a, b, c});
-        mesh.patch_of_triangle.push_back(number);
     };
     for (int i = 0; i < parts; ++i)
         for (int j = 0; j < parts; ++j) {
@@ -102,6 +101,57 @@ void add_patch(const BezierPatch& patch, int parts, MeshData& mesh) {
             add(a, b, a + 1);
             add(a + 1, b, b + 1);
         }
+}
+
+/// Control points of a curve's part [a, a + width], by blossoming.
+void part_of_curve(const double (&curve)[4], double a, double width, double (&part)[4]) {
+    for (int k = 0; k < 4; ++k) {
+        double c[4] = {curve[0], curve[1], curve[2], curve[3]};
+        for (int level = 0; level < 3; ++level) {
+            const double at = level < k ? a + width : a;
+            for (int i = 0; i + level < 3; ++i) c[i] = (1.0 - at) * c[i] + at * c[i + 1];
+        }
+        part[k] = c[0];
+    }
+}
+
+/// Halved alike along both parameters; parts is a power of two.
+void add_pieces(const BezierPatch& patch, std::uint32_t number, int parts, std::vector<PatchPiece>& pieces) {
+    const double width = 1.0 / parts;
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+            PatchPiece piece;
+            piece.patch = number;
+            piece.u0 = float(i * width);
+            piece.v0 = float(j * width);
+            piece.width = float(width);
+            for (int axis = 0; axis < 3; ++axis) {
+                double rows[4][4];
+                for (int k = 0; k < 4; ++k) {
+                    const double row[4] = {patch.control_mm[k][0][axis], patch.control_mm[k][1][axis],
+                                           patch.control_mm[k][2][axis], patch.control_mm[k][3][axis]};
+                    part_of_curve(row, j * width, width, rows[k]);
+                }
+                for (int l = 0; l < 4; ++l) {
+                    const double column[4] = {rows[0][l], rows[1][l], rows[2][l], rows[3][l]};
+                    double part[4];
+                    part_of_curve(column, i * width, width, part);
+                    for (int k = 0; k < 4; ++k) piece.control_mm[axis][k][l] = part[k];
+                }
+            }
+            double largest_mm = 0.0;
+            for (const auto& axis : piece.control_mm)
+                for (const auto& row : axis)
+                    for (const double coordinate : row) largest_mm = std::max(largest_mm, std::abs(coordinate));
+            piece.largest_mm = float(largest_mm);
+            pieces.push_back(piece);
+        }
+}
+
+/// Into how many parts both parameters of a patch are cut to be as flat as this: the largest distance of a split into n by n is
+/// (M_uu + 2 M_uv + M_vv) / (8 n^2).
+double parts_for(double bound_mm, double tolerance_mm) {
+    return std::ceil(std::sqrt(bound_mm / (2.0 * tolerance_mm)));
 }
 
 }  // namespace
@@ -113,16 +163,19 @@ std::vector<MeshData> surfaces_from_patches(const std::vector<BezierPatch>& patc
         world.push_back(mapped(patch, world_from_object));
         bound_mm = std::max(bound_mm, curvature_bound_mm(world.back()));
     }
-    // Largest distance of a split into n by n: (M_uu + 2 M_uv + M_vv) / (8 n^2).
-    const double tolerance_mm = chord_part * size_mm(world);
-    const int parts = std::clamp(int(std::ceil(std::sqrt(bound_mm / (2.0 * tolerance_mm)))), 4, 256);
+    const double whole_mm = size_mm(world), tolerance_mm = chord_part * whole_mm;
+    const int parts = int(std::clamp(parts_for(bound_mm, tolerance_mm), 4.0, 256.0));
     std::map<int, MeshData> by_part;
-    for (const BezierPatch& patch : world) add_patch(patch, parts, by_part[patch.part]);
+    for (const BezierPatch& patch : world) {
+        MeshData& mesh = by_part[patch.part];
+        add_patch(patch, parts, mesh);
+        int pieces = 1;
+        while (pieces < 64 && pieces < parts_for(curvature_bound_mm(patch), piece_part * whole_mm)) pieces *= 2;
+        add_pieces(patch, std::uint32_t(mesh.patches.size() - 1), pieces, mesh.pieces);
+    }
     std::vector<MeshData> meshes;
     for (auto& [part, mesh] : by_part) {
-        // A ray that nearly touches slides along the surface while it is closer than the tolerance.
-        mesh.patch_reach_mm = float(4.0 * std::sqrt(tolerance_mm * size_mm(world)));
-        mesh.patch_slack_mm = float(2.0 * tolerance_mm);
+        mesh.deviation_mm = float(tolerance_mm);
         meshes.push_back(std::move(mesh));
     }
     return meshes;

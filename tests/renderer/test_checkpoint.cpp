@@ -53,6 +53,41 @@ TEST(Checkpoint, ContinuesToTheSameBits) {
     }
 }
 
+/// Stopped by the clock: soon, within a pass; every pixel tells how many samples it has, and the picture is that of those
+/// samples.
+TEST(Checkpoint, TimeStopsWithinAPassAndContinuesToTheSameBits) {
+    const PlaneScene scene({"render.width=256", "render.height=192"});
+    constexpr int samples = 40;
+    const auto unbroken = scene.film();
+    const RenderOutcome expected = scene.render(*unbroken, samples);
+    const auto stopped = scene.film();
+    const double limit_s = 0.3 * expected.seconds;
+    const auto nothing = [](const RenderProgress&) {};
+    const RenderOutcome part = render_cpu(scene.host, scene.intersector, {samples, limit_s, 0.0}, *stopped, nothing);
+    EXPECT_FALSE(part.interrupted);
+    // A pass of 16 samples alone would take more than that.
+    EXPECT_LT(part.seconds, limit_s + 0.1 * expected.seconds);
+    EXPECT_LT(part.new_samples, expected.new_samples);
+    EXPECT_GE(part.finished_samples, 1);
+    const Image image = stopped->to_image();
+    const int counts = image.find_channel("sample_count");
+    std::uint64_t sum = 0;
+    for (int b = 0; b < stopped->num_blocks(); ++b) {
+        const PixelWindow window = stopped->block_window(b);
+        for (int y = window.y0; y < window.y1; ++y)
+            for (int x = window.x0; x < window.x1; ++x) {
+                ASSERT_EQ(image.pixel(x, y)[counts], float(stopped->block(b).end_sample));
+                sum += stopped->block(b).end_sample;
+            }
+    }
+    EXPECT_EQ(sum, part.new_samples);
+    scene.render(*stopped, samples);
+    expect_same_state(*unbroken, *stopped);
+    // However short the time: a whole picture.
+    const auto hurried = scene.film();
+    EXPECT_EQ(render_cpu(scene.host, scene.intersector, {samples, 1.0e-6, 0.0}, *hurried, nothing).finished_samples, 1);
+}
+
 /// While the picture is being rendered, whatever moment is caught.
 TEST(Checkpoint, WrittenWhileRenderingIsWhole) {
     const PlaneScene scene({"render.width=96", "render.height=64"});

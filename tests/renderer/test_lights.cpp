@@ -89,6 +89,19 @@ TEST(Lights, DirectionsFollowTheirDensities) {
         return light;
     }()));
     EXPECT_TRUE(check_flat("rectangle far away", rectangle(400.0)));
+    // Large, 4 mm beyond its edge, 2 mm above its plane; the same 0.02 mm above; and 2 mm over its middle.
+    LightDescription floor = rectangle(0.0);
+    floor.width_mm = 100.0;
+    floor.height_mm = 40.0;
+    const auto seen_from = [&](double x_mm, double height_mm) {
+        floor.position_mm = {x_mm, 3.0, -height_mm};
+        floor.target_mm = {x_mm, 3.0, 10.0};
+        floor.up = {0.0, 1.0, 0.0};
+        return floor;
+    };
+    EXPECT_TRUE(check_flat("large rectangle beside", seen_from(54.0, 2.0)));
+    EXPECT_TRUE(check_flat("large rectangle nearly in its plane", seen_from(54.0, 0.02)));
+    EXPECT_TRUE(check_flat("large rectangle beneath", seen_from(2.0, 2.0)));
     EXPECT_TRUE(check_flat("disk", of_kind(LightKind::area, {2.0, 3.0, 6.0}, 4.0)));
     EXPECT_TRUE(check_round("sphere nearby", of_kind(LightKind::sphere, {2.0, 3.0, 6.0}, 5.0)));
     EXPECT_TRUE(check_round("small sphere", of_kind(LightKind::sphere, {20.0, 3.0, 100.0}, 0.5)));
@@ -107,7 +120,74 @@ TEST(Lights, RectangleSolidAngleIsThatOfItsClosedForm) {
     const LightData data({description}, Upsampling::basis, 0.0f);
     const double a = 7.0, b = 3.0, d = 5.0;
     const double expected = 4.0 * std::asin(a * b / std::sqrt((a * a + d * d) * (b * b + d * d)));
-    EXPECT_NEAR(double(SphericalRectangle(data.view().lights[0].geometry, {}).solid_angle), expected, 2.0e-6);
+    EXPECT_NEAR(seen_rectangle(data.view().lights[0].geometry, {}).solid_angle(), expected, 2.0e-6);
+}
+
+/// By Girard's theorem, from the angles between the planes through the point and the edges, in long double.
+long double girard(const Vec3& centre, const Vec3& half_x, const Vec3& half_y) {
+    using Vector = std::array<long double, 3>;
+    const auto cross = [](const Vector& a, const Vector& b) {
+        return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    std::array<Vector, 4> corner;
+    for (int k = 0; k < 4; ++k) {
+        const long double x = k == 0 || k == 3 ? -1.0L : 1.0L, y = k < 2 ? -1.0L : 1.0L;
+        corner[std::size_t(k)] = {centre.x + x * half_x.x + y * half_y.x, centre.y + x * half_x.y + y * half_y.y,
+                                  centre.z + x * half_x.z + y * half_y.z};
+    }
+    long double sum = -2.0L * std::acos(-1.0L);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vector &a = corner[(k + 3) % 4], &b = corner[k], &c = corner[(k + 1) % 4];
+        const Vector ab = cross(b, a), cb = cross(b, c), both = cross(ab, cb);
+        sum += std::atan2(std::sqrt(dot(both, both)), dot(ab, cb));
+    }
+    return sum;
+}
+
+/// Random rectangles and points, down to 1e-5 of the distance above the rectangle's plane, beside it and in front of it; lengths
+/// over six orders of magnitude. The edges are along axes, so that they are at right angles to the last bit.
+TEST(Lights, RectangleSolidAnglesAgreeWithLongDouble) {
+    double smallest = 1.0;
+    for (std::uint64_t i = 0; i < 20'000; ++i) {
+        SamplerRandom random{i};
+        const auto size = [&](float decades) { return std::pow(10.0f, decades * (random.next() - 0.5f)); };
+        const float half_x = size(4.0f), half_y = size(4.0f), height = size(2.0f) * (half_x + half_y);
+        const float grazing = i % 2 == 0 ? 1.0f : std::pow(10.0f, -5.0f * random.next());
+        const Vec3 centre{(4.0f * random.next() - 2.0f) * (half_x + height), (4.0f * random.next() - 2.0f) * (half_y + height),
+                          (random.next() < 0.5f ? -1.0f : 1.0f) * grazing * height};
+        const Vec3 x{half_x, 0.0f, 0.0f}, y{0.0f, half_y, 0.0f};
+        const double expected = double(girard(centre, x, y)), found = SphericalRectangle(centre, x, y, {}).solid_angle();
+        // The reference cancels from 2 pi: good to 1e-18.
+        EXPECT_NEAR(found, expected, 1.0e-6 * expected + 1.0e-16) << i;
+        smallest = std::min(smallest, expected);
+    }
+    EXPECT_LT(smallest, 1.0e-9);
+}
+
+/// What a drawn direction meets is the rectangle, at the distance told.
+TEST(Lights, DrawnDirectionsMeetRectanglesAtTheirDistance) {
+    int drawn = 0;
+    for (std::uint64_t i = 0; i < 20'000; ++i) {
+        SamplerRandom random{i};
+        const Vec3 x{30.0f * random.next() + 0.1f, 0.0f, 0.0f}, y{0.0f, 30.0f * random.next() + 0.1f, 0.0f};
+        const float height = std::pow(10.0f, -4.0f * random.next()) * 10.0f;
+        const Vec3 centre{80.0f * random.next() - 40.0f, 80.0f * random.next() - 40.0f, height};
+        const SphericalRectangle seen(centre, x, y, {});
+        if (!seen.worth_drawing()) continue;
+        ++drawn;
+        float distance_mm = 0.0f;
+        const float u = random.next(), v = random.next();
+        const Vec3 place = [&] {
+            const Vec3 direction = seen.direction(u, v, distance_mm);
+            EXPECT_NEAR(length(direction), 1.0f, 1.0e-6f);
+            return distance_mm * direction - centre;
+        }();
+        EXPECT_NEAR(place.z, 0.0f, 1.0e-6f * distance_mm) << i;
+        EXPECT_LE(std::abs(place.x), x.x + 1.0e-6f * distance_mm) << i;
+        EXPECT_LE(std::abs(place.y), y.y + 1.0e-6f * distance_mm) << i;
+    }
+    EXPECT_GT(drawn, 10'000);
 }
 
 /// Irradiance at the origin on a plane that faces up, from `draws` directions: mean and standard error.

@@ -145,6 +145,11 @@ TEST(LightsInScenes, LightsInsideBodiesAreRefused) {
                                        "'\n[[light]]\nkind = \"sphere\"\nposition_mm = [0, 1, 0]\nradius_mm = 0.1\n",
                                    1),
                        "light.0: stands at [0, 1, 0] inside a transparent object");
+    EXPECT_INPUT_ERROR(render_text("[[object]]\nkind = \"opal\"\nfile = '" + (folder / "opal.vdb").string() +
+                                       "'\n[[light]]\nkind = \"area\"\nposition_mm = [0, 0, 5]\ntarget_mm = [0, 9, 5]\n"
+                                       "width_mm = 1\nheight_mm = 5\n",
+                                   1),
+                       "light.0: the light at [0, 0, 5] reaches into a transparent object");
 }
 
 }  // namespace

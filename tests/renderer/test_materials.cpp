@@ -52,8 +52,40 @@ TEST(Materials, RoughOpalIsInvisible) {
         150, 0.006);
 }
 
-/// Two overlapping parts of an exact surface are one body: nothing between them. Paths that slip through at the edges of patches
-/// are lost, a few in ten thousand.
+/// A rough white ball inside glass, of a higher index than the glass and of a lower one, lit through the glass.
+TEST(Materials, WhitePlasticInsideGlassIsInvisible) {
+    for (const char* coat : {"n = 1.6\n", "n = 1.4\n"})
+        expect_invisible(ball("kind = \"dielectric\"\nn = 1.5\n") +
+                             "[[material]]\nname = \"p\"\nkind = \"plastic\"\nalbedo = 1.0\nroughness = 0.3\n" + coat +
+                             "[[object]]\nkind = \"sphere\"\nradius_mm = 1.8\nmaterial = \"p\"\n",
+                         150, 0.0012);
+}
+
+/// An exact surface far from where the scene's coordinates begin is the same: no path is lost.
+TEST(Materials, ExactSurfacesLoseNoPathsWhereverTheyAre) {
+    OpalAsset asset = SmallOpal().make();
+    asset.bezier_patches = round_body(2.6, 1.8, 1.2);
+    asset.constants.sigma_s_mie_per_mm = 0.3;
+    const ScratchFolder folder;
+    write_opal_asset(asset, folder / "opal.vdb");
+    for (const int place_mm : {0, 1000, 10000}) {
+        const std::string x = std::to_string(place_mm);
+        const Rendered rendered = render_text(
+            "[render]\nwidth = 32\nheight = 32\nsampler = \"independent\"\nfilter = \"box\"\n[opal]\ndiffraction = \"none\"\n"
+            "[camera]\nposition_mm = [" +
+                x + ", -20, 5]\ntarget_mm = [" + x +
+                ", 0, 0]\nvertical_fov_deg = 14\n"
+                "[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\nexact = true\ntranslate_mm = [" +
+                x + ", 0, 0]\nfile = '" + (folder / "opal.vdb").string() + "'\n",
+            100);
+        EXPECT_EQ(rendered.outcome.counters.lost_paths, 0u) << place_mm;
+        const MeanEstimate estimate = region_mean(rendered.image, "G", 0, 0, 32, 32);
+        const double truncated = rendered.outcome.totals.truncated_rgb[1] / double(rendered.outcome.totals.samples);
+        EXPECT_NEAR(estimate.mean + truncated, 1.0, 4.0 * estimate.standard_error + 1.0e-4) << place_mm;
+    }
+}
+
+/// Two overlapping parts of an exact surface are one body: nothing between them.
 TEST(Materials, PartsOfAnExactSurfaceAreOneBody) {
     OpalAsset asset = SmallOpal().make();
     asset.bezier_patches = round_body(1.6, 1.4, 1.2, -0.8, 0);

@@ -4,6 +4,7 @@
 #include "renderer/core/nested_bodies.h"
 #include "renderer/host/enclosure.h"
 #include "renderer/host/field_grid.h"
+#include "renderer/host/mesh_contact.h"
 #include "small_opal.h"
 
 namespace opal {
@@ -57,6 +58,54 @@ TEST(Enclosure, MeshesThatReachIntoABodyAreFound) {
     EXPECT_FALSE(fixture.reaches(make_sphere(1.0), {10.0f, 4.1f, 0.0f})) << "touches nearly";
     EXPECT_FALSE(fixture.reaches(make_sphere(1.0), {0.0f, 0.0f, 0.0f})) << "where the body would be without its transform";
     EXPECT_FALSE(fixture.reaches(make_sphere(9.0), {10.0f, 0.0f, 0.0f})) << "all around";
+}
+
+LightGeometry flat(LightShape shape, Vec3 position, Vec3 normal) {
+    LightGeometry light;
+    light.shape = shape;
+    light.position = position;
+    light.normal = normalize(normal);
+    const Frame frame(light.normal);
+    light.half_x = 2.0f * frame.tangent;
+    light.half_y = 0.5f * frame.bitangent;
+    light.radius_mm = 2.0f;
+    return light;
+}
+
+/// Against a ball of 2 mm: closed forms of the distances. Its triangles lie inside it by 1e-3 of its radius at most.
+TEST(MeshContact, LightsThatReachIntoABodyAreFound) {
+    const MeshData ball = make_sphere(2.0);
+    LightGeometry sphere;
+    sphere.shape = LightShape::sphere;
+    sphere.radius_mm = 1.0f;
+    for (const bool touches : {true, false}) {
+        const float apart = touches ? -0.01f : 0.01f;
+        sphere.position = (3.0f + apart) * normalize(Vec3{1.0f, -2.0f, 0.5f});
+        EXPECT_EQ(touches_light(ball, sphere), touches);
+        for (const Vec3 toward : {Vec3{1.0f, 0.0f, 0.0f}, normalize(Vec3{0.3f, 0.8f, -0.6f})}) {
+            // A disk that faces the ball, and one whose rim points at it.
+            EXPECT_EQ(touches_light(ball, flat(LightShape::disk, (2.0f + apart) * toward, toward)), touches);
+            const Vec3 across = Frame(toward).tangent;
+            EXPECT_EQ(touches_light(ball, flat(LightShape::disk, (4.0f + apart) * toward, across)), touches);
+            LightGeometry rectangle = flat(LightShape::rectangle, {}, across);
+            const Vec3 longer = normalize(rectangle.half_x);
+            rectangle.position = (4.0f + apart) * longer;
+            EXPECT_EQ(touches_light(ball, rectangle), touches);
+            // By its short side, and shifted along it so that a corner is nearest.
+            rectangle.position = (2.5f + apart) * normalize(rectangle.half_y);
+            EXPECT_EQ(touches_light(ball, rectangle), touches);
+            rectangle.position =
+                rectangle.half_x + rectangle.half_y + (2.0f + apart) * normalize(longer + normalize(rectangle.half_y));
+            EXPECT_EQ(touches_light(ball, rectangle), touches);
+        }
+    }
+    // Wholly inside: the surface is not touched.
+    sphere.position = {};
+    EXPECT_FALSE(touches_light(ball, sphere));
+    EXPECT_TRUE(encloses(ball, sphere.position));
+    // All around it.
+    sphere.radius_mm = 9.0f;
+    EXPECT_TRUE(touches_light(ball, sphere));
 }
 
 }  // namespace

@@ -62,9 +62,8 @@ Plastic<1> plastic(float roughness, float albedo, CoatAlbedo& coat, float eta = 
     result.eta[0] = eta;
     result.albedo[0] = albedo;
     if (!result.smooth()) {
-        coat = make_coat_albedo(roughness, eta);
-        result.coat_albedo = coat.value.data();
-        result.mean_coat_albedo = coat.mean;
+        coat = make_coat_albedo(roughness, std::vector<EtaRange>{{eta, eta}});
+        result.coat_albedo = coat.view();
     }
     return result;
 }
@@ -283,6 +282,27 @@ TEST(Plastic, KeepsEnergy) {
         for (const float roughness : {0.1f, 0.4f, 1.0f}) {
             const Tally white = tally(plastic(roughness, 1.0f, coat), out, 200'000);
             EXPECT_NEAR(white.mean, 1.0, 4.0 * white.error + 2.0e-3) << roughness << " " << cosine;
+        }
+    }
+}
+
+/// Against what is before it in an opal or in glass; total reflection begins at 0.436 of the cosine where the coat's index is 0.9
+/// of that. A coat met between two entries of its table (dispersion) as well.
+TEST(Plastic, AWhiteBaseReturnsAllLightInsideBodies) {
+    for (const float eta : {0.9f, 0.99f, 1.0f, 1.02f, 1.1f})
+        for (const float roughness : {0.05f, 0.3f, 1.0f})
+            for (const double cosine : {1.0, 0.6, 0.47, 0.436, 0.4, 0.2, 0.05}) {
+                CoatAlbedo coat;
+                const Tally white = tally(plastic(roughness, 1.0f, coat, eta), direction_at(cosine), 100'000);
+                EXPECT_NEAR(white.mean, 1.0, 4.0 * white.error + 5.0e-3) << eta << " " << roughness << " " << cosine;
+            }
+    const CoatAlbedo coat = make_coat_albedo(0.3f, std::vector<EtaRange>{{1.5f, 1.53f}, {1.03f, 1.06f}});
+    EXPECT_EQ(coat.eta.size(), 8u);
+    for (const float eta : {1.034f, 1.0555f, 1.515f}) {
+        Plastic<1> between{0.3f, {eta}, {1.0f}, coat.view()};
+        for (const double cosine : {0.9, 0.3, 0.05}) {
+            const Tally white = tally(between, direction_at(cosine), 200'000);
+            EXPECT_NEAR(white.mean, 1.0, 4.0 * white.error + 5.0e-3) << eta << " " << cosine;
         }
     }
 }
