@@ -42,7 +42,7 @@ void require_sound_ply_header(const std::filesystem::path& file) {
             throw InputError(fmt::format("{}: damaged: its header states '{}' elements '{}', the file has {} bytes",
                                          file.string(), count, name, bytes));
     }
-    throw InputError(fmt::format("{}: not a readable mesh: its header does not end (no line end_header)", file.string()));
+    throw InputError(fmt::format("{}: cannot be read: its header does not end (no line end_header)", file.string()));
 }
 
 }  // namespace opal

@@ -57,8 +57,8 @@ std::string toml_quoted(std::string_view text) {
     std::string quoted = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') quoted += '\\';
-        if (static_cast<unsigned char>(c) < 0x20)
-            quoted += c == '\n' ? "\\n" : (c == '\t' ? "\\t" : "\\u0020");
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+            quoted += c == '\n' ? "\\n" : (c == '\t' ? "\\t" : fmt::format("\\u{:04x}", static_cast<unsigned char>(c)));
         else
             quoted += c;
     }

@@ -123,8 +123,8 @@ std::optional<NoiseTest> noise_test(const Image& picture, const Image& reference
 ImageComparison compare_images(const Image& picture, const Image& reference, double exposure_ev, const std::string& picture_name,
                                const std::string& reference_name) {
     if (picture.width != reference.width || picture.height != reference.height)
-        throw InputError(fmt::format("{} has {}x{} pixels, {} {}x{}; only pictures of one size can be compared", picture_name,
-                                     picture.width, picture.height, reference_name, reference.width, reference.height));
+        throw InputError(fmt::format("{} and {} differ in size: {}x{} and {}x{} pixels", picture_name, reference_name,
+                                     picture.width, picture.height, reference.width, reference.height));
     const Image rgb = rgb_of(picture, picture_name), reference_rgb = rgb_of(reference, reference_name);
     ImageComparison result;
     result.relative_mse = relative_mse(rgb, reference_rgb);

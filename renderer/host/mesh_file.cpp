@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "formats/error.h"
+#include "formats/mesh_faces.h"
 #include "formats/ply_header.h"
 #include "renderer/host/mesh_topology.h"
 
@@ -46,10 +47,15 @@ MeshData load_mesh(const std::filesystem::path& path, std::optional<double> smoo
     if (!std::filesystem::is_regular_file(path, error)) throw InputError(fmt::format("{}: no such mesh file", path.string()));
     require_sound_ply_header(path);
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(path.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate |
-                                                                aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
-                                                                aiProcess_PreTransformVertices | aiProcess_FindDegenerates);
-    if (!scene) throw InputError(fmt::format("{}: not a readable mesh: {}", path.string(), importer.GetErrorString()));
+    const auto not_readable = [&] {
+        return InputError(fmt::format("{}: not a readable mesh: {}", path.string(), importer.GetErrorString()));
+    };
+    const aiScene* scene = importer.ReadFile(path.string(), 0);
+    if (!scene) throw not_readable();
+    require_sound_faces(*scene, path.string());
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                                         aiProcess_PreTransformVertices | aiProcess_FindDegenerates);
+    if (!scene) throw not_readable();
     std::vector<const aiMesh*> parts;
     unsigned most_material = 0, least_material = ~0u;
     // Those of a .stl are its facets', often left 0; the triangles have them anyway.

@@ -172,7 +172,7 @@ TEST_F(BadInput, LineBreaksInNames) {
     std::filesystem::copy_file(at("opal.vdb"), at("two\nlines.vdb"));
     const ProgramResult check = run_program(opal_model + " check '" + at("two\nlines.vdb") + "'");
     EXPECT_EQ(check.exit_code, 0);
-    EXPECT_EQ(std::count(check.out.begin(), check.out.end(), '\n'), std::ptrdiff_t(1)) << check.out;
+    EXPECT_NE(check.out.find("two\\nlines.vdb: is a valid opal\n"), std::string::npos) << check.out;
 }
 
 TEST_F(BadInput, Scene) {

@@ -3,6 +3,7 @@
 
 #include "expect_error.h"
 #include "formats/scene.h"
+#include "formats/text.h"
 
 namespace opal {
 namespace {
@@ -139,6 +140,14 @@ TEST(Scene, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse(minimal, {"object.1.file=x.vdb"}), "there are 1 entries");
     EXPECT_INPUT_ERROR(parse(minimal, {"camera.vertical_fov_deg=9007199254740993"}), "is out of range");
     EXPECT_INPUT_ERROR(parse(minimal, {"camera.position_mm=[9007199254740993,0,0]"}), "is out of range");
+}
+
+TEST(Scene, ControlCharactersOfNamesSurvive) {
+    const std::string text = "[[object]]\nkind = \"opal\"\nfile = \"a.vdb\"\nname = \"x\\n\\t\\u001b[31m\\u007f\"\n";
+    const SceneDescription scene = parse_scene(text, "test.toml", {});
+    EXPECT_EQ(scene.objects[0].name, "x\n\t\x1b[31m\x7f");
+    EXPECT_EQ(parse_scene(scene_to_toml(scene), "test.toml", {}).objects[0].name, scene.objects[0].name);
+    EXPECT_EQ(one_line(scene.objects[0].name), "x\\n\\t\\x1b[31m\\x7f");
 }
 
 }  // namespace

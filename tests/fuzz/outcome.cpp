@@ -55,6 +55,8 @@ void judge_run(const ProgramRun& run, bool may_refuse, CaseOutcome& outcome) {
             ++errors;
         }
     outcome.refused = true;
+    // Of the memory that the harness allows: a clear error, though no fault of the input.
+    if (run.exit_code == 1 && may_refuse && errors == 1 && error.ends_with(": out of memory")) return;
     if (run.exit_code != 2 || !may_refuse)
         add_defect(outcome, fmt::format("exit code {}: {}", run.exit_code, error.empty() ? run.text : error));
     else if (errors != 1)
