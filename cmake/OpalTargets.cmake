@@ -20,6 +20,12 @@ if(OPAL_AVX2 AND EXISTS /proc/cpuinfo)
   endif()
 endif()
 
+if(OPAL_FUZZ)
+  # Clang warns of other things than the compiler that the project is written for.
+  target_compile_options(opal_compile_options INTERFACE -fsanitize=fuzzer-no-link,address -g1 -Wno-error)
+  target_link_options(opal_compile_options INTERFACE -fsanitize=address)
+endif()
+
 if(OPAL_SANITIZE)
   # Instrumented, CGAL's optional pairs look uninitialized to GCC 12; the builds without sanitizers keep the warning.
   target_compile_options(opal_compile_options INTERFACE -fsanitize=${OPAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all

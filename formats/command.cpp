@@ -11,6 +11,7 @@
 #include <new>
 
 #include "formats/error.h"
+#include "formats/text.h"
 
 namespace opal {
 namespace {
@@ -24,13 +25,6 @@ void on_interrupt(int signal_number) {
         std::raise(signal_number);
     }
     interrupt_flag = 1;
-}
-
-/// One line whatever a library or a file put into the message.
-std::string one_line(std::string message) {
-    for (char& c : message)
-        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    return message;
 }
 
 }  // namespace

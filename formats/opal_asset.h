@@ -93,7 +93,7 @@ struct WriteOpalOptions {
 
 /// Writes the asset atomically: grids in the order grain_id, shape, weight, sigma_a_scale, sigma_s_rayleigh_400nm, sigma_s_mie,
 /// orientation_rgb, grain_id_float, sites (points last: NanoVDB's converter stops at them), blosc-compressed where available,
-/// with schema version, units and full provenance as file metadata. The content depends on the asset and the options alone.
+/// with schema version, units and full provenance as file metadata. The bytes depend on the asset and the options alone.
 /// Throws InputError where the output cannot be created, where twins are asked for without grain_id, or of more grains than a
 /// float can tell apart; SystemError where writing fails (full disk).
 void write_opal_asset(const OpalAsset& asset, const std::filesystem::path& path, const WriteOpalOptions& options = {});

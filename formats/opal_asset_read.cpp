@@ -12,12 +12,15 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <new>
+#include <stdexcept>
 
 #include "formats/error.h"
 #include "formats/opal_asset.h"
 #include "formats/opal_asset_io.h"
 #include "formats/opal_asset_metadata.h"
 #include "formats/opal_asset_sites.h"
+#include "formats/opal_file_checksum.h"
 
 namespace opal {
 namespace {
@@ -41,6 +44,8 @@ openvdb::Int32Grid::Ptr as_grain_ids(const openvdb::GridBase::Ptr& base, const s
                                      std::vector<std::string>& notices) {
     if (const auto ids = openvdb::gridPtrCast<openvdb::Int32Grid>(base)) {
         empty_outside(*ids);
+        // Converters take the class at its word.
+        ids->setGridClass(openvdb::GRID_UNKNOWN);
         return ids;
     }
     const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(base);
@@ -208,6 +213,18 @@ OpalAsset checked_asset(const RawOpalFile& raw, const std::string& file, const R
     return asset;
 }
 
+/// OpenVDB warns of files that are newer than itself, and then reads them as if they were not.
+void require_known_version(std::istream& stream, const std::filesystem::path& path) {
+    std::int64_t magic = 0;
+    std::uint32_t version = 0;
+    stream.read(reinterpret_cast<char*>(&magic), sizeof magic);
+    stream.read(reinterpret_cast<char*>(&version), sizeof version);
+    stream.seekg(0);
+    if (magic == openvdb::OPENVDB_MAGIC && version > openvdb::OPENVDB_FILE_VERSION)
+        throw InputError(fmt::format("{}: .vdb of version {}; versions up to {} can be read", path.string(), version,
+                                     std::uint32_t(openvdb::OPENVDB_FILE_VERSION)));
+}
+
 }  // namespace
 
 RawOpalFile read_raw_opal_file(const std::filesystem::path& path) {
@@ -218,12 +235,26 @@ RawOpalFile read_raw_opal_file(const std::filesystem::path& path) {
     RawOpalFile raw;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
+    if (!checksum_fits(path))
+        throw InputError(
+            fmt::format("{}: not a complete .vdb file, or a damaged one: its checksum does not fit its content", path.string()));
     // Without exceptions a truncated file would be read as zeros.
     stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
     try {
+        require_known_version(stream, path);
         openvdb::io::Stream archive(stream, /*delayLoad=*/false);
         raw.grids = *archive.getGrids();
         raw.metadata = *archive.getMetadata();
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw InputError(
+            fmt::format("{}: damaged, or larger than memory: a length in it asks for more memory than there is", path.string()));
+    } catch (const std::length_error&) {
+        throw InputError(fmt::format("{}: damaged: a length in it is impossible", path.string()));
+    } catch (const std::ios_base::failure&) {
+        throw InputError(
+            fmt::format("{}: not a complete .vdb file: it ends too early, or a length in it is damaged", path.string()));
     } catch (const std::exception& exception) {
         throw InputError(fmt::format("{}: not a complete .vdb file: {}", path.string(), exception.what()));
     }

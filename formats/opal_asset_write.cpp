@@ -13,6 +13,7 @@
 #include "formats/opal_asset.h"
 #include "formats/opal_asset_metadata.h"
 #include "formats/opal_asset_sites.h"
+#include "formats/opal_file_checksum.h"
 
 namespace opal {
 namespace {
@@ -97,6 +98,7 @@ void write_opal_asset(const OpalAsset& asset, const std::filesystem::path& path,
     } catch (const std::exception&) {
         throw SystemError(fmt::format("{}: writing failed: {}", path.string(), errno ? std::strerror(errno) : "stream error"));
     }
+    stamp_checksum(file.temporary_path());
     file.commit();
 }
 

@@ -65,6 +65,21 @@ std::string toml_quoted(std::string_view text) {
     return quoted + '"';
 }
 
+std::string one_line(std::string_view text) {
+    std::string line;
+    for (const char c : text) {
+        if (c == '\n')
+            line += "\\n";
+        else if (c == '\t')
+            line += "\\t";
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+            line += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+        else
+            line += c;
+    }
+    return line;
+}
+
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     const std::string nearest = nearest_name(name, candidates);
     return nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?";

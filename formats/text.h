@@ -20,6 +20,10 @@ std::string vector_text(const std::array<double, 3>& v);
 /// A TOML basic string: quoted, with what needs it escaped.
 std::string toml_quoted(std::string_view text);
 
+/// The text on one line of a terminal: control characters, which a file or a library may have put into it, are written as \n, \t
+/// or \x1b.
+std::string one_line(std::string_view text);
+
 /// "; did you mean 'x'?" or "", ready to append to a message.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 

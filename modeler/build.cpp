@@ -118,13 +118,19 @@ void describe_grid(const openvdb::Int32Grid& grain_id, BuildReport& report) {
     report.tiles = grain_id.tree().activeTileCount();
 }
 
-void require_voxels(const openvdb::Int32Grid& grain_id, const openvdb::BBoxd& bounds_mm) {
-    if (!grain_id.tree().empty()) return;
+[[noreturn]] void fail_without_inside(double voxel_size_mm, const openvdb::BBoxd& bounds_mm) {
     const openvdb::Vec3d size_mm = bounds_mm.extents();
     throw InputError(
         fmt::format("grains.voxel_size_mm {:.4g}: no voxel's centre lies inside the shape of {:.4g} x {:.4g} x {:.4g} mm; "
                     "choose smaller voxels",
-                    grain_id.voxelSize().x(), size_mm.x(), size_mm.y(), size_mm.z()));
+                    voxel_size_mm, size_mm.x(), size_mm.y(), size_mm.z()));
+}
+
+/// A level set that is positive everywhere has no surface to be drawn.
+void require_inside(const openvdb::FloatGrid& level_set, const openvdb::BBoxd& bounds_mm) {
+    for (auto value = level_set.cbeginValueOn(); value; ++value)
+        if (*value < 0.0f) return;
+    fail_without_inside(level_set.voxelSize().x(), bounds_mm);
 }
 
 /// A file of sites alone takes no voxels, whatever their size.
@@ -141,6 +147,7 @@ bool has_fields(const BaseColorRecipe& color) {
 void add_voxels(const Recipe& recipe, const Shape& shape, double voxel_size_mm, StageRunner& stages, BuildReport& report,
                 OpalAsset& asset) {
     asset.shape = stages.run("level_set", [&] { return shape.level_set(voxel_size_mm); });
+    require_inside(*asset.shape, shape.bounds_mm());
     std::vector<std::int32_t> grain_of_site;
     for (const Site& site : asset.sites) grain_of_site.push_back(site.grain);
     const auto label = [&](const openvdb::FloatGrid& level_set) {
@@ -148,7 +155,7 @@ void add_voxels(const Recipe& recipe, const Shape& shape, double voxel_size_mm, 
     };
     if (recipe.output.has(OutputGrid::grain_id)) {
         asset.grain_id = stages.run("labelling", [&] { return label(*asset.shape); });
-        require_voxels(*asset.grain_id, shape.bounds_mm());
+        if (asset.grain_id->tree().empty()) fail_without_inside(voxel_size_mm, shape.bounds_mm());
         describe_grid(*asset.grain_id, report);
     }
     if (!has_fields(recipe.base_color) || !recipe.output.has(OutputGrid::fields)) return;

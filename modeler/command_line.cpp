@@ -12,6 +12,7 @@
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
+#include "formats/number_option.h"
 #include "formats/opal_asset.h"
 #include "formats/recipe.h"
 #include "formats/report.h"
@@ -56,7 +57,7 @@ Examples:
 const std::vector<std::string> command_names = {"build", "info", "check", "section", "percolation"};
 
 void say(const std::string& message) {
-    fmt::print(stderr, "opal-model: {}\n", message);
+    fmt::print(stderr, "opal-model: {}\n", one_line(message));
     std::fflush(stderr);
 }
 
@@ -104,12 +105,12 @@ int run_info(const FileArguments& arguments) {
 
 int run_check(const FileArguments& arguments) {
     const AssetCheck check = check_opal_asset(arguments.file);
-    for (const std::string& error : check.errors) fmt::print("error: {}\n", error);
-    for (const std::string& advice : check.advice) fmt::print("advice: {}\n", advice);
+    for (const std::string& error : check.errors) fmt::print("error: {}\n", one_line(error));
+    for (const std::string& advice : check.advice) fmt::print("advice: {}\n", one_line(advice));
     if (!check.errors.empty())
         throw InputError(
             fmt::format("{}: {} problem{} found", arguments.file, check.errors.size(), check.errors.size() == 1 ? "" : "s"));
-    fmt::print("{}: is a valid opal\n", arguments.file);
+    fmt::print("{}: is a valid opal\n", one_line(arguments.file));
     return 0;
 }
 
@@ -144,7 +145,7 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
     build
         ->add_option("--for-pixels", arguments.accepted_error_pixels,
                      "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
-        ->check(CLI::Range(0.01, 100.0))
+        ->check(number_between(0.01, 100.0))
         ->type_name("PIXELS");
     build->add_option("--threads", arguments.threads, "threads to use (default: all); the result is the same for any number")
         ->check(CLI::Range(1, 4096))

@@ -89,7 +89,7 @@ int run_section(const SectionArguments& arguments) {
     for (const std::string& file : arguments.files) {
         std::vector<std::string> notices;
         assets.push_back(read_opal_asset(file, {}, notices));
-        for (const std::string& notice : notices) fmt::print(stderr, "opal-model: notice: {}: {}\n", file, notice);
+        for (const std::string& notice : notices) fmt::print(stderr, "opal-model: notice: {}\n", one_line(file + ": " + notice));
         throw_if_interrupted();
     }
     std::vector<SectionSubject> subjects;

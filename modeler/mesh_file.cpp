@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "formats/error.h"
+#include "formats/ply_header.h"
 #include "formats/text.h"
 
 namespace opal {
@@ -49,6 +50,7 @@ void append(const aiMesh& part, double mm_per_unit, const std::filesystem::path&
 
 const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
     require_readable(file);
+    require_sound_ply_header(file);
     const aiScene* const scene = importer.ReadFile(file.string(), steps);
     if (scene == nullptr) {
         const std::string reason = importer.GetErrorString();
@@ -62,8 +64,9 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
 TriangleMesh read_mesh_file(const std::filesystem::path& file, double mm_per_unit) {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene& scene =
-        read_scene(importer, file, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
+    const aiScene& scene = read_scene(
+        importer, file,
+        aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
     TriangleMesh mesh;
     for (unsigned n = 0; n < scene.mNumMeshes; ++n) append(*scene.mMeshes[n], mm_per_unit, file, mesh);
     if (mesh.triangles.empty()) throw InputError(fmt::format("mesh {}: holds no triangles", file.string()));

@@ -68,6 +68,23 @@ std::vector<openvdb::Vec3d> distinct(std::vector<openvdb::Vec3d> points) {
     return points;
 }
 
+/// Sites that fill less than this part of the shape's length are in another unit than the shape; where the cells of a few of them
+/// meet, far out, would take more memory to find than there is.
+constexpr double least_span = 0.01;
+
+void require_span(const Shape& shape, const std::string& file, const SiteSet& sites) {
+    openvdb::BBoxd of_sites;
+    for (const openvdb::Vec3d& p : sites.positions_mm) of_sites.expand(p);
+    const openvdb::Vec3d extents = shape.bounds_mm().extents();
+    const double span_mm = of_sites.extents()[of_sites.maxExtent()];
+    const double longest_mm = std::max({extents.x(), extents.y(), extents.z()});
+    if (span_mm > 0.0 && span_mm < least_span * longest_mm)
+        throw InputError(
+            fmt::format("sites {}: span {:.4g} mm of the shape's {:.4g} mm; allowed: from a hundredth; check "
+                        "grains.sites.scale",
+                        file, span_mm, longest_mm));
+}
+
 void judge_places(const Shape& shape, const std::string& file, SiteSet& sites) {
     openvdb::BBoxd near = shape.bounds_mm();
     near.expand(sites.spacing_mm());
@@ -104,6 +121,7 @@ SiteSet sites_from_file(const Shape& shape, const GrainsRecipe& grains) {
     sites.duplicates = count - distinct_mm.size();
     measure_distances(distinct_mm, sites);
     judge_places(shape, grains.sites.file.string(), sites);
+    require_span(shape, grains.sites.file.string(), sites);
     return sites;
 }
 

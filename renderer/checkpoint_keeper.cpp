@@ -8,6 +8,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/error.h"
+#include "formats/text.h"
 #include "renderer/host/render_fingerprint.h"
 
 namespace opal {
@@ -83,7 +84,8 @@ bool CheckpointKeeper::try_to_write() {
         return true;
     } catch (const std::exception& error) {
         ++counts_.failed;
-        fmt::print(stderr, "opal-render: warning: no checkpoint: {}; the render goes on and tries again\n", error.what());
+        fmt::print(stderr, "opal-render: warning: no checkpoint: {}; the render goes on and tries again\n",
+                   one_line(error.what()));
         return false;
     }
 }

@@ -8,9 +8,9 @@
 
 #include "formats/atomic_file.h"
 #include "formats/error.h"
+#include "formats/number_option.h"
 #include "renderer/host/development.h"
 #include "renderer/host/image_comparison.h"
-#include "renderer/number_option.h"
 #include "renderer/render_command.h"
 
 namespace opal {
@@ -89,7 +89,8 @@ int command_compare(int argc, char** argv) {
     const Image picture = read_image(options.picture), reference = read_image(options.reference);
     const double exposure_ev =
         options.exposure_ev ? *options.exposure_ev : film_of_image(reference, options.reference.string()).exposure_ev;
-    const ImageComparison comparison = compare_images(picture, reference, exposure_ev);
+    const ImageComparison comparison =
+        compare_images(picture, reference, exposure_ev, options.picture.string(), options.reference.string());
     if (!options.difference.empty()) write_exr(options.difference, comparison.difference);
     if (options.json)
         print_json(comparison, exposure_ev);

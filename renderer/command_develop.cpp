@@ -7,8 +7,10 @@
 #include "formats/atomic_file.h"
 #include "formats/error.h"
 #include "formats/film_settings.h"
+#include "formats/number_option.h"
+#include "formats/text.h"
 #include "renderer/host/development.h"
-#include "renderer/number_option.h"
+#include "renderer/host/finite_pixels.h"
 #include "renderer/pixel_window_flag.h"
 #include "renderer/render_command.h"
 
@@ -19,6 +21,7 @@ struct DevelopOptions {
     std::filesystem::path picture, output;
     std::optional<double> exposure_ev;
     std::string white, tone, crop;
+    bool blacken = false;
 };
 
 constexpr const char* footer =
@@ -46,6 +49,7 @@ int command_develop(int argc, char** argv) {
     app.add_option("--white", options.white, "D65, A, E or a temperature such as 6500K");
     app.add_option("--tone", options.tone, "filmic, srgb or none")->check(CLI::IsMember(tone_names));
     app.add_option("--crop", options.crop, "x0,y0,x1,y1: pixels of the whole picture, the ends not counted");
+    app.add_flag("--blacken", options.blacken, "show pixels that are not finite numbers as black (default: refuse the picture)");
     if (const std::optional<int> code = parse_command_line(app, argc, argv)) return *code;
     if (options.output.extension() != ".png")
         throw InputError(fmt::format("output {}: the name must end in .png", options.output.string()));
@@ -60,6 +64,11 @@ int command_develop(int argc, char** argv) {
     if (!options.tone.empty())
         shown.tone = static_cast<ToneCurve>(std::find(tone_names.begin(), tone_names.end(), options.tone) - tone_names.begin());
     if (!options.crop.empty()) picture = cropped(picture, parse_pixel_window(options.crop), "--crop");
+    if (const std::optional<BrokenPixels> broken = find_broken_pixels(picture)) {
+        if (!options.blacken) throw InputError(describe(*broken, file) + "; --blacken shows such pixels as black");
+        fmt::print(stderr, "opal-render: warning: {}; shown as black\n", one_line(describe(*broken, file)));
+        blacken_broken_pixels(picture);
+    }
     write_png(options.output, developed(picture, taken, shown, file));
     return 0;
 }

@@ -43,8 +43,9 @@ int command_merge(int argc, char** argv) {
     for (std::size_t i = 1; i < parts.size(); ++i) merger.add(read_part(parts[i]));
     const Image image = merger.merged();
     const FilmDescription film = film_of_image(image, parts.front().string());
+    const Image display = developed(image, film, film, parts.front().string());
     write_exr(output, image);
-    write_png(png, developed(image, film, film, output.string()));
+    write_png(png, display);
     const std::vector<SampleRange> missing = merger.missing();
     if (!missing.empty())
         fmt::print(stderr, "opal-render: warning: samples {} of each pixel are missing; {} is a part again\n",

@@ -9,6 +9,7 @@
 #include "formats/error.h"
 #include "formats/film_settings.h"
 #include "formats/report.h"
+#include "formats/text.h"
 #include "formats_generated/version.h"
 #include "renderer/checkpoint_keeper.h"
 #include "renderer/cpu/aovs.h"
@@ -124,7 +125,7 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     watch = {};
     const EmbreeScene intersector(host.meshes());
     stages.rays = watch.seconds();
-    for (const std::string& notice : notices) fmt::print(stderr, "opal-render: note: {}\n", notice);
+    for (const std::string& notice : notices) fmt::print(stderr, "opal-render: note: {}\n", one_line(notice));
 
     const Xyz white = film_white(scene.film);
     const SampleRange range = options.samples_of.value_or(SampleRange{0, std::uint32_t(scene.render.samples)});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/render_options.h"
-#include "renderer/number_option.h"
+#include "formats/number_option.h"
 
 #include <fmt/format.h>
 

@@ -92,7 +92,6 @@ nlohmann::json render_report(const SceneDescription& scene, const HostScene& hos
               {"majorant_violations", counters.majorant_violations}}},
             {"paths_per_second", double(outcome.new_samples) / std::max(1.0e-9, outcome.seconds)},
             {"grains", grains_report(host)},
-            {"paths_per_second", double(samples) / std::max(1.0e-9, outcome.seconds)},
             {"truncated_rgb",
              {outcome.totals.truncated_rgb[0] / double(samples), outcome.totals.truncated_rgb[1] / double(samples),
               outcome.totals.truncated_rgb[2] / double(samples)}},

@@ -8,6 +8,10 @@ namespace opal {
 
 /// Share of the directions that the guide draws; the phase functions draw the rest, so that no weight exceeds 1 / (1 - share).
 inline constexpr float guide_share = 0.5f;
+/// Scatterings of a path that are guided. Weights multiply over scatterings: in dense bodies the light would end up in samples so
+/// rare and so heavy that a picture of any affordable length misses it. Light that the eye sees sharply has scattered once or
+/// twice.
+inline constexpr int most_guided_scatterings = 2;
 
 /// Density (1/sr) of scattering into a direction, given that light scatters: Rayleigh's and the other phase function by their
 /// shares.
@@ -28,6 +32,7 @@ OPAL_HD inline Vec3 guided_scatter_direction(const MediumView& view, const Light
     const float choice = random.next(), u1 = random.next(), u2 = random.next();
     const GuidedDirections directions(guide, position_mm, direction);
     const float share = directions.known() ? guide_share : 0.0f;
+    ++weights.guided_scatterings;
     Vec3 turned;
     if (choice < share) {
         turned = directions.sample(u1, u2);

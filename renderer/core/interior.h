@@ -102,9 +102,10 @@ OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wave
     ++counters.scatterings;
     event.kind = InteriorEventKind::scattering;
     event.turned_back = false;
-    event.direction = opal.guide.weight ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
-                                                                   event.direction, weights, random)
-                                        : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
+    const bool guided = opal.guide.weight && weights.guided_scatterings < most_guided_scatterings;
+    event.direction = guided ? guided_scatter_direction(opal.medium, opal.guide, event.position, wavelengths, medium,
+                                                        event.direction, weights, random)
+                             : scatter_direction(opal.medium, wavelengths, medium, event.direction, weights, random);
     visit.renew();
 }
 

@@ -14,6 +14,7 @@ struct LaneWeights {
     Lanes<N> throughput = Lanes<N>::all(1.0f);  ///< physical throughput over the lane's own path probability
     Lanes<N> ratio = Lanes<N>::all(1.0f);       ///< path probability of the lane over the hero's; lane 0 stays 1
     int count = N;
+    int guided_scatterings = 0;  ///< directions drawn with the help of a guide so far
 
     /// Weight of each lane's contribution; an average over the lanes in use gives the estimate.
     OPAL_HD Lanes<N> contribution() const {

@@ -12,7 +12,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/error.h"
-#include "renderer/host/content_hash.h"
+#include "formats/content_hash.h"
 
 namespace opal {
 namespace {
@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little, "the file is written a
 static_assert(std::is_trivially_copyable_v<PathCounters> && std::is_trivially_copyable_v<SpectrumTotals>);
 
 constexpr char magic[8] = {'O', 'P', 'A', 'L', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 constexpr std::uint32_t max_header_bytes = 1 << 24;
 
 class CheckpointOutput {
@@ -37,8 +37,10 @@ class CheckpointOutput {
         static_assert(std::is_trivially_copyable_v<T>);
         write(&value, sizeof value);
     }
+    /// Of all that is written so far.
+    void write_checksum() { write(hash_.value()); }
     void finish() {
-        write(hash_.value());
+        write_checksum();
         stream_.close();
         if (!stream_) throw SystemError(fmt::format("{}: writing failed: {}", path_.string(), std::strerror(errno)));
     }
@@ -67,9 +69,13 @@ class CheckpointInput {
         read(&value, sizeof value);
         return value;
     }
-    void finish() {
+    /// Throws where what was read so far is not what was written.
+    void check(const char* part) {
         const std::uint64_t expected = hash_.value();
-        if (read<std::uint64_t>() != expected) fail("its checksum does not fit its content");
+        if (read<std::uint64_t>() != expected) fail(fmt::format("it is damaged: the checksum does not fit its {}", part));
+    }
+    void finish() {
+        check("content");
         if (stream_.peek() != std::ifstream::traits_type::eof()) fail("it goes on after its end");
     }
     [[noreturn]] void fail(const std::string& why) const {
@@ -98,11 +104,12 @@ nlohmann::json read_header(CheckpointInput& input) {
     if (std::memcmp(found, magic, sizeof magic) != 0) input.fail("it does not begin like one");
     const auto version = input.read<std::uint32_t>();
     if (version != format_version)
-        input.fail(fmt::format("its format is version {}, this program's {}", version, format_version));
+        input.fail(fmt::format("its format is version {}, this program's {} (or it is damaged)", version, format_version));
     const auto length = input.read<std::uint32_t>();
     if (length > max_header_bytes) input.fail("its header is damaged");
     std::string text(length, '\0');
     input.read(text.data(), text.size());
+    input.check("header");
     nlohmann::json header = nlohmann::json::parse(text, nullptr, false);
     if (!header.is_object() || !header.contains("layout") || !header["fingerprint"].is_string() ||
         !header["render_s"].is_number())
@@ -178,6 +185,7 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, const
     output.write(format_version);
     output.write(std::uint32_t(text.size()));
     output.write(text.data(), text.size());
+    output.write_checksum();
     std::vector<double> sums;
     std::vector<std::uint32_t> counts;
     for (int b = 0; b < film.num_blocks() && output.good(); ++b) write_block(output, film, b, sums, counts);

@@ -10,9 +10,9 @@
 /// The exact state of a render in a file, so that it can be continued with the same result to the bit.
 ///
 /// Little-endian: the 8 bytes "OPALCKPT"; format version (32 bits); length (32 bits) and text of a JSON header (fingerprint,
-/// window, layout, seconds spent); per block of the film, in order: samples done (32 bits), settled (32 bits), noise in luminance
-/// and chroma (32-bit floats), counters, totals, and per pixel its sums (64-bit floats) and sample count (32 bits); the noise's
-/// floor (64-bit float); a 64-bit hash of all before it.
+/// window, layout, seconds spent); a 64-bit hash of all so far; per block of the film, in order: samples done (32 bits), settled
+/// (32 bits), noise in luminance and chroma (32-bit floats), counters, totals, and per pixel its sums (64-bit floats) and sample
+/// count (32 bits); the noise's floor (64-bit float); a 64-bit hash of all before it.
 namespace opal {
 
 struct CheckpointHeader {

@@ -35,7 +35,49 @@ Picture constant_picture() {
     return {64, 32, std::vector<Rgb>(std::size_t(64) * 32, Rgb{1.0f, 1.0f, 1.0f})};
 }
 
-Picture picture_from_file(const std::filesystem::path& path) {
+/// Negative radiance counts as none, as long as it is little: filters with negative lobes and changes of the colour space leave
+/// some in pictures that are otherwise sound.
+class NegativeTexels {
+  public:
+    explicit NegativeTexels(std::string file) : file_(std::move(file)) {}
+
+    /// A component as it counts. Throws InputError where it is no finite number.
+    float checked(float component, int x, int y) {
+        if (!std::isfinite(component))
+            throw InputError(fmt::format("{}: texel ({}, {}) is {}; radiance must be finite", file_, x, y, component));
+        if (component >= 0.0f) {
+            light_ += double(component);
+            return component;
+        }
+        cut_off_ -= double(component);
+        ++count_;
+        if (component < lowest_) {
+            lowest_ = component;
+            place_ = fmt::format("({}, {})", x, y);
+        }
+        return 0.0f;
+    }
+
+    void finish(std::vector<std::string>* notices) const {
+        if (count_ == 0) return;
+        const std::string what =
+            fmt::format("{}: {} values of texels are negative, the lowest, {}, at texel {}", file_, count_, lowest_, place_);
+        if (!(cut_off_ <= allowed_share * light_))
+            throw InputError(
+                fmt::format("{}; together {:.3g} of the picture's light, allowed: {:g}", what, cut_off_ / light_, allowed_share));
+        if (notices) notices->push_back(what + "; they count as 0");
+    }
+
+  private:
+    static constexpr double allowed_share = 0.01;
+    std::string file_, place_;
+    double light_ = 0.0, cut_off_ = 0.0;
+    float lowest_ = 0.0f;
+    std::size_t count_ = 0;
+};
+
+Picture picture_from_file(const std::filesystem::path& path, std::vector<std::string>* notices) {
+    NegativeTexels negatives(path.string());
     const Image image = read_image(path);
     if (image.num_channels() < 3 && image.num_channels() != 1)
         throw InputError(fmt::format("{}: {} channels; an environment has 1 or 3", path.string(), image.num_channels()));
@@ -47,22 +89,20 @@ Picture picture_from_file(const std::filesystem::path& path) {
             // Longitude runs clockwise in pictures of this kind and counter-clockwise here; the middle column looks along +Y.
             const int column = ((map.width - 1 - x) + 3 * map.width / 4) % map.width;
             const float* pixel = image.pixel(column, y);
-            const Rgb value{pixel[0], pixel[green], pixel[blue]};
-            for (const float component : {value.r, value.g, value.b})
-                if (!(component >= 0.0f) || !std::isfinite(component))
-                    throw InputError(fmt::format("{}: texel ({}, {}) is {}; radiance must be finite and at least 0",
-                                                 path.string(), column, y, component));
+            Rgb value{pixel[0], pixel[green], pixel[blue]};
+            for (float* const component : {&value.r, &value.g, &value.b}) *component = negatives.checked(*component, column, y);
             map.texels.push_back(value);
         }
+    negatives.finish(notices);
     return map;
 }
 
-Picture picture_of(const EnvironmentDescription& description) {
+Picture picture_of(const EnvironmentDescription& description, std::vector<std::string>* notices) {
     switch (description.kind) {
         case EnvironmentKind::constant:
             return constant_picture();
         case EnvironmentKind::file:
-            return picture_from_file(description.file);
+            return picture_from_file(description.file, notices);
         case EnvironmentKind::studio:
             break;
     }
@@ -119,8 +159,9 @@ double mean_luminance(const Picture& picture) {
 
 }  // namespace
 
-EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling) {
-    const Picture picture = picture_of(description);
+EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling,
+                                std::vector<std::string>* notices) {
+    const Picture picture = picture_of(description, notices);
     EnvironmentMap map;
     map.width = picture.width;
     map.height = picture.height;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "formats/scene.h"
@@ -22,9 +23,10 @@ struct EnvironmentMap {
 };
 
 /// Loads or builds the environment of a scene: a constant, the built-in studio, or a latitude-longitude file (.exr, .hdr); its
-/// colours become spectra by `upsampling`. Throws InputError for unreadable files and for negative or NaN texels, naming the
-/// texel.
-EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling = Upsampling::jakob_hanika);
+/// colours become spectra by `upsampling`. Negative texels count as 0, with a notice. Throws InputError for unreadable files, for
+/// texels that are no finite numbers, and where what is negative amounts to more than a hundredth of the light, naming the texel.
+EnvironmentMap make_environment(const EnvironmentDescription& description, Upsampling upsampling = Upsampling::jakob_hanika,
+                                std::vector<std::string>* notices = nullptr);
 
 /// Radiance of the built-in studio from a unit direction (Z up, camera in front at -Y): a large key soft box at the upper left, a
 /// strip at the right, a low fill from the front and a rim light behind, in a dim surround. Linear sRGB times the illuminant.

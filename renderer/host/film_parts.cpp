@@ -60,6 +60,16 @@ int film_place(std::size_t exact) {
     return exact < 6 ? int(exact) : spectrum_offset + int(exact) - 6;
 }
 
+void require_finite(const FilmPart& part) {
+    const std::vector<float>& pixels = part.image.pixels;
+    const auto broken = std::find_if_not(pixels.begin(), pixels.end(), [](float value) { return std::isfinite(value); });
+    if (broken == pixels.end()) return;
+    const std::size_t place = std::size_t(broken - pixels.begin()), channels = part.image.channel_names.size();
+    const std::size_t pixel = place / channels, width = std::size_t(part.image.width);
+    throw InputError(fmt::format("{}: damaged: {} of pixel ({}, {}) is {}", part.name, part.image.channel_names[place % channels],
+                                 pixel % width, pixel / width, *broken));
+}
+
 PixelWindow window_of(const Image& image) {
     return {image.x0, image.y0, image.x0 + image.width, image.y0 + image.height};
 }
@@ -121,6 +131,7 @@ FilmPart read_part(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: the header's {} is damaged", part.name, all_samples_attribute));
     read_words(path, part.image);
 
+    require_finite(part);
     std::uint32_t expected = 0;
     for (const SampleRange& range : part.ranges) expected += range.end - range.first;
     const int counts = part.image.find_channel("sample_count");

@@ -118,7 +118,7 @@ HostScene::HostScene(const SceneDescription& description, std::vector<std::strin
 
 HostScene::HostScene(const SceneDescription& description, const std::array<double, 3>& origin_mm,
                      std::vector<std::string>& notices, OpalCache* opals)
-    : environment_(make_environment(description.environment, description.color.upsampling)),
+    : environment_(make_environment(description.environment, description.color.upsampling, &notices)),
       lights_(description.lights, description.color.upsampling, environment_.mean_luminance),
       spectra_(make_spectra(description, environment_, lights_)),
       guided_(description.render.guided) {

@@ -10,6 +10,7 @@
 
 #include "formats/colorimetry.h"
 #include "formats/error.h"
+#include "renderer/host/finite_pixels.h"
 #include "renderer/host/tone_mapping.h"
 
 namespace opal {
@@ -30,9 +31,10 @@ std::optional<ChannelTriple> find_channels(const Image& image, const std::string
 }
 
 /// The linear R, G and B alone.
-Image rgb_of(const Image& image, const char* which) {
+Image rgb_of(const Image& image, const std::string& name) {
     const std::optional<ChannelTriple> channels = find_channels(image, "");
-    if (!channels) throw InputError(fmt::format("the {} picture has no channels R, G, B", which));
+    if (!channels) throw InputError(fmt::format("{}: has no channels R, G, B", name));
+    if (const std::optional<BrokenPixels> broken = find_broken_pixels(image)) throw InputError(describe(*broken, name));
     Image rgb;
     rgb.width = image.width;
     rgb.height = image.height;
@@ -40,12 +42,7 @@ Image rgb_of(const Image& image, const char* which) {
     rgb.pixels.reserve(3 * std::size_t(image.width) * std::size_t(image.height));
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
-            for (const int channel : *channels) {
-                const float value = image.pixel(x, y)[channel];
-                if (!std::isfinite(value))
-                    throw InputError(fmt::format("the {} picture's pixel ({}, {}) is not a finite number", which, x, y));
-                rgb.pixels.push_back(value);
-            }
+            for (const int channel : *channels) rgb.pixels.push_back(image.pixel(x, y)[channel]);
     return rgb;
 }
 
@@ -123,11 +120,12 @@ std::optional<NoiseTest> noise_test(const Image& picture, const Image& reference
 
 }  // namespace
 
-ImageComparison compare_images(const Image& picture, const Image& reference, double exposure_ev) {
+ImageComparison compare_images(const Image& picture, const Image& reference, double exposure_ev, const std::string& picture_name,
+                               const std::string& reference_name) {
     if (picture.width != reference.width || picture.height != reference.height)
-        throw InputError(fmt::format("the pictures differ in size: {}x{} and {}x{} pixels", picture.width, picture.height,
-                                     reference.width, reference.height));
-    const Image rgb = rgb_of(picture, "first"), reference_rgb = rgb_of(reference, "second");
+        throw InputError(fmt::format("{} has {}x{} pixels, {} {}x{}; only pictures of one size can be compared", picture_name,
+                                     picture.width, picture.height, reference_name, reference.width, reference.height));
+    const Image rgb = rgb_of(picture, picture_name), reference_rgb = rgb_of(reference, reference_name);
     ImageComparison result;
     result.relative_mse = relative_mse(rgb, reference_rgb);
     const std::array<double, 3> mean = channel_means(rgb), reference_mean = channel_means(reference_rgb);

@@ -30,7 +30,9 @@ struct ImageComparison {
 };
 
 /// Compares two linear pictures, shown at the given exposure. Throws InputError where they have no R, G, B, differ in size, or
-/// hold values that are not finite.
-ImageComparison compare_images(const Image& picture, const Image& reference, double exposure_ev);
+/// hold values that are not finite; the names stand for them in messages.
+ImageComparison compare_images(const Image& picture, const Image& reference, double exposure_ev,
+                               const std::string& picture_name = "the picture",
+                               const std::string& reference_name = "the reference");
 
 }  // namespace opal

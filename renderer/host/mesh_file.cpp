@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "formats/error.h"
+#include "formats/ply_header.h"
 #include "renderer/host/mesh_topology.h"
 
 namespace opal {
@@ -43,14 +44,16 @@ MeshData load_mesh(const std::filesystem::path& path, std::optional<double> smoo
                    std::vector<std::string>& notices) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError(fmt::format("{}: no such mesh file", path.string()));
+    require_sound_ply_header(path);
     Assimp::Importer importer;
-    const aiScene* scene =
-        importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
-                                             aiProcess_PreTransformVertices | aiProcess_FindDegenerates);
+    const aiScene* scene = importer.ReadFile(path.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                                                                aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                                                                aiProcess_PreTransformVertices | aiProcess_FindDegenerates);
     if (!scene) throw InputError(fmt::format("{}: not a readable mesh: {}", path.string(), importer.GetErrorString()));
     std::vector<const aiMesh*> parts;
     unsigned most_material = 0, least_material = ~0u;
-    bool with_normals = !smooth_normals_deg;
+    // Those of a .stl are its facets', often left 0; the triangles have them anyway.
+    bool with_normals = !smooth_normals_deg && path.extension() != ".stl" && path.extension() != ".STL";
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
         const aiMesh& part = *scene->mMeshes[m];
         if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;

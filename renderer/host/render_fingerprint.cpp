@@ -11,7 +11,7 @@
 
 #include "formats/error.h"
 #include "formats_generated/version.h"
-#include "renderer/host/content_hash.h"
+#include "formats/content_hash.h"
 
 namespace opal {
 namespace {

@@ -16,6 +16,8 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/scene.h"
+#include "gem_samples.h"
+#include "path_kinds.h"
 #include "renderer/core/path_tracer.h"
 #include "renderer/cpu/light_guides.h"
 
@@ -36,29 +38,17 @@ const std::vector<Setting> settings = {
     {"3 companions, sobol, guided", "sobol", 3, true},    {"7 companions, sobol, guided", "sobol", 7, true},
 };
 
-/// Luminance and two opponent colours, X and Z against Y over the white's.
-using Opponent = std::array<double, 3>;
-
 template <int N>
-Opponent trace_opponent(const SceneView& view, const EmbreeScene& intersector, std::uint32_t pixel, std::uint32_t sample) {
-    PathWavelengths<N> wavelengths;
+Opponent trace_uncounted(const SceneView& view, const EmbreeScene& intersector, std::uint32_t pixel, std::uint32_t sample) {
     PathCounters counters;
-    const PathResult<N> result = trace_sample(view, intersector, pixel, sample, wavelengths, counters);
-    Xyz sum{0.0, 0.0, 0.0};
-    for (int i = 0; i < wavelengths.count; ++i) {
-        const Vec3 observer = table_at(view.spectra.observer, wavelengths.wavelength_nm[i]);
-        const double radiance = double(result.radiance.v[i]) / (double(wavelengths.pdf_per_nm[i]) * wavelengths.count);
-        sum = {sum.x + radiance * double(observer.x), sum.y + radiance * double(observer.y),
-               sum.z + radiance * double(observer.z)};
-    }
-    return {sum.y, sum.x / srgb_white.x - sum.y, sum.z / srgb_white.z - sum.y};
+    return trace_opponent<N>(view, intersector, pixel, sample, counters);
 }
 
-using Tracer = decltype(&trace_opponent<1>);
+using Tracer = decltype(&trace_uncounted<1>);
 
 Tracer tracer_for(int companions) {
-    if (companions == 0) return trace_opponent<1>;
-    return companions <= 3 ? trace_opponent<4> : trace_opponent<8>;
+    if (companions == 0) return trace_uncounted<1>;
+    return companions <= 3 ? trace_uncounted<4> : trace_uncounted<8>;
 }
 
 /// Sums over the seeds of one pixel's mean and its square.
@@ -108,20 +98,6 @@ struct Measured {
     std::vector<int> samples;
     std::vector<double> seconds;
 };
-
-/// The pixels whose centre shows a transparent body.
-std::vector<std::uint32_t> gem_pixels(const SceneView& view, const EmbreeScene& intersector) {
-    std::vector<std::uint32_t> pixels;
-    for (int y = 0; y < view.height; ++y)
-        for (int x = 0; x < view.width; ++x) {
-            RayHit hit;
-            const Ray ray = camera_ray(view.camera, (float(x) + 0.5f) / float(view.width), (float(y) + 0.5f) / float(view.height),
-                                       0.0f, 0.0f);
-            if (intersector.closest(ray, hit) && view.meshes[hit.mesh].body >= 0)
-                pixels.push_back(std::uint32_t(y * view.width + x));
-        }
-    return pixels;
-}
 
 Measured measure(const std::filesystem::path& scene_file, const std::filesystem::path& opal, const Setting& setting, int width,
                  int samples) {
@@ -205,8 +181,10 @@ void build_opal(const std::filesystem::path& recipe, const std::filesystem::path
 void bench_convergence(const std::filesystem::path& folder, bool quick) {
     std::filesystem::create_directories(folder);
     const int width = quick ? 48 : 80, samples = quick ? 64 : 256;
-    AtomicFile curves_file(folder / "convergence.csv"), ratios_file(folder / "convergence_ratios.csv");
-    std::ofstream curves(curves_file.temporary_path()), ratios(ratios_file.temporary_path());
+    AtomicFile curves_file(folder / "convergence.csv"), ratios_file(folder / "convergence_ratios.csv"),
+        kinds_file(folder / "convergence_paths.csv");
+    std::ofstream curves(curves_file.temporary_path()), ratios(ratios_file.temporary_path()), kinds(kinds_file.temporary_path());
+    kinds << "scene,scatterings,diffractions,paths,light,second_moment\n";
     curves << "scene,setting,samples,seconds,relmse_luminance,relmse_luminance_se,relmse_chroma,relmse_chroma_se\n";
     ratios << "scene,setting,samples_ratio_luminance,samples_ratio_chroma,time_ratio_luminance,time_ratio_chroma\n";
     for (const std::string scene : {"precious_opal", "white_opal", "fire_opal"}) {
@@ -236,14 +214,18 @@ void bench_convergence(const std::filesystem::path& folder, bool quick) {
             fmt::print("{}\n", line);
             std::fflush(stdout);
         }
+        for (const PathKind& kind : path_kinds(example / "scene.toml", opal, width, 4 * samples))
+            kinds << fmt::format("{},{},{},{:.4f},{:.4f},{:.4f}\n", scene, kind.scatterings, kind.diffractions, kind.paths,
+                                 kind.light, kind.second_moment);
         std::filesystem::remove(opal);
     }
-    for (std::ofstream* stream : {&curves, &ratios}) {
+    for (std::ofstream* stream : {&curves, &ratios, &kinds}) {
         stream->close();
         if (!*stream) throw SystemError(fmt::format("{}: writing failed", folder.string()));
     }
     curves_file.commit();
     ratios_file.commit();
+    kinds_file.commit();
 }
 
 }  // namespace opal

@@ -10,7 +10,8 @@ namespace opal {
 ///  - convergence.csv: per scene, setting and number of samples the relative mean square error of luminance and of chroma over
 ///    the gem's pixels, each with its standard error, and the time that the samples took;
 ///  - convergence_ratios.csv: per scene and setting how many times fewer samples, and how much less time, reach the error that
-///    one independent wavelength per path has at the most samples.
+///    one independent wavelength per path has at the most samples;
+///  - convergence_paths.csv: per scene which kinds of paths the noise comes from (path_kinds).
 /// `quick`: fewer pixels and samples. Throws InputError and SystemError.
 void bench_convergence(const std::filesystem::path& folder, bool quick);
 

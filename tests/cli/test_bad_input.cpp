@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "../formats/expect_error.h"
 #include "../renderer/small_opal.h"
 #include "formats/opal_asset.h"
+#include "formats/opal_file_checksum.h"
 #include "run_program.h"
 
 namespace opal {
@@ -88,6 +91,8 @@ TEST_F(BadInput, ModelCommandLine) {
     expect_failure(build("good.toml", "--for " + at("no_scene.toml")), 2, "no_scene.toml: no such file");
     expect_failure(build("good.toml", "--for " + at("good.toml")), 2, "good.toml:");
     expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels 0"), 2, "--for-pixels");
+    expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels nan"), 2,
+                   "--for-pixels: nan is not a number from 0.01 to 100");
     expect_failure(opal_model + " info " + at("good.toml"), 2, "not a complete .vdb file");
     expect_failure(opal_model + " check " + at("nothing.vdb"), 2, "no such file");
 }
@@ -116,6 +121,58 @@ TEST_F(BadInput, Opal) {
     expect_failure(render("scene.toml", "--set object.0.file=" + at("text.vdb")), 2, "text.vdb: not a complete .vdb file");
     expect_failure(render("scene.toml", "--set object.0.file=" + at("cut.vdb")), 2, "cut.vdb: not a complete .vdb file");
     expect_nothing_written(files);
+}
+
+/// Whatever byte is wrong, it is noticed before it can do harm.
+TEST_F(BadInput, DamagedOpal) {
+    std::ifstream file(folder_ / "opal.vdb", std::ios::binary);
+    const std::string good((std::istreambuf_iterator<char>(file)), {});
+    std::vector<std::string> notices;
+    // The first bytes say that it is a .vdb of this kind at all; from 30 on, the checksum and what it covers.
+    for (std::size_t i = 30; i < good.size(); i += i < 2000 ? 7 : 1 + good.size() / 200) {
+        std::string damaged = good;
+        damaged[i] = char(damaged[i] ^ 0x10);
+        write("damaged.vdb", damaged);
+        EXPECT_INPUT_ERROR(read_opal_asset(folder_ / "damaged.vdb", {}, notices),
+                           "damaged.vdb: not a complete .vdb file, or a damaged one: its checksum does not fit its content");
+    }
+    for (const std::size_t i : {0, 8, 9, 12, 20, 21, 29}) {
+        std::string damaged = good;
+        damaged[i] = char(damaged[i] ^ 0x10);
+        write("damaged.vdb", damaged);
+        try {
+            read_opal_asset(folder_ / "damaged.vdb", {}, notices);
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("damaged.vdb: "), std::string::npos) << error.what();
+        }
+    }
+}
+
+/// Nothing but the recipe decides the bytes; other programs' files have no checksum and are read as they are.
+TEST_F(BadInput, OpalsAreTheSameBytes) {
+    const OpalAsset asset = SmallOpal().make();
+    write_opal_asset(asset, folder_ / "a.vdb");
+    write_opal_asset(asset, folder_ / "b.vdb");
+    std::ifstream a(folder_ / "a.vdb", std::ios::binary), b(folder_ / "b.vdb", std::ios::binary);
+    const std::string bytes_a((std::istreambuf_iterator<char>(a)), {}), bytes_b((std::istreambuf_iterator<char>(b)), {});
+    EXPECT_TRUE(bytes_a == bytes_b);
+    openvdb::io::File again(at("again.vdb"));
+    again.write({asset.grain_id});
+    again.close();
+    EXPECT_TRUE(checksum_fits(folder_ / "again.vdb"));
+}
+
+/// One error is one line, whatever a name holds.
+TEST_F(BadInput, LineBreaksInNames) {
+    const std::string name = "'" + at("no\nsuch\tfile.toml") + "'";
+    expect_failure(opal_render + " " + name + " -o " + at("out.exr"), 2, "no\\nsuch\\tfile.toml: no such file");
+    expect_failure(opal_model + " build " + name + " -o " + at("out.vdb"), 2, "no\\nsuch\\tfile.toml: no such file");
+    const ProgramResult result = run_program(opal_model + " info " + name);
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    std::filesystem::copy_file(at("opal.vdb"), at("two\nlines.vdb"));
+    const ProgramResult check = run_program(opal_model + " check '" + at("two\nlines.vdb") + "'");
+    EXPECT_EQ(check.exit_code, 0);
+    EXPECT_EQ(std::count(check.out.begin(), check.out.end(), '\n'), std::ptrdiff_t(1)) << check.out;
 }
 
 TEST_F(BadInput, Scene) {

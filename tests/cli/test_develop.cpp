@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -89,6 +90,27 @@ TEST_F(Develop, RenderingWithoutItsViewer) {
     EXPECT_NE(result.err.find("no viewer answers at localhost:1"), std::string::npos) << result.err;
     EXPECT_EQ(read_image(folder_ / "tev.exr").pixels, read_image(folder_ / "a.exr").pixels);
     expect_failure(opal_render + " " + at("scene.toml") + " -o " + at("tev.exr") + " --tev localhost:x", 2, "--tev localhost:x");
+}
+
+TEST_F(Develop, RefusesPicturesThatAreNoNumbers) {
+    Image picture = read_image(folder_ / "a.exr");
+    picture.pixel(5, 2)[0] = std::nanf("");
+    picture.pixel(7, 3)[1] = INFINITY;
+    picture.pixel(7, 3)[2] = INFINITY;
+    write_exr(folder_ / "broken.exr", picture);
+    const std::string develop_broken = opal_render + " develop " + at("broken.exr") + " -o " + at("b.png");
+    expect_failure(develop_broken, 2, "broken.exr: 2 pixels are not finite numbers, the first at (5, 2); --blacken");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "b.png"));
+    expect_failure(opal_render + " compare " + at("a.exr") + " " + at("broken.exr"), 2, "broken.exr: 2 pixels are not finite");
+    develop("broken.exr", "b.png", "--blacken");
+    const Image shown = read_image(folder_ / "b.png"), whole = read_image(folder_ / "a.png");
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(shown.pixel(5, 2)[c], 0.0f);
+        EXPECT_EQ(shown.pixel(7, 3)[c], 0.0f);
+        EXPECT_EQ(shown.pixel(6, 2)[c], whole.pixel(6, 2)[c]);
+    }
+    // What lies outside the crop does not matter.
+    develop("broken.exr", "c.png", "--crop 0,0,5,5");
 }
 
 }  // namespace

@@ -51,11 +51,11 @@ class PreciousOpal : public testing::Test {
     }
 
     static Picture render(const std::string& name, double rotate_deg, int seed) {
-        const ProgramResult result =
-            run_program(opal_render + " " + examples + "/precious_opal/scene.toml -o " + (*folder_ / (name + ".exr")).string() +
-                        " --set object.0.file=" + (*folder_ / "opal.vdb").string() +
-                        " --set render.width=128 --set render.height=96 --spp 896 --set environment.rotate_deg=" +
-                        std::to_string(rotate_deg) + " --seed " + std::to_string(seed));
+        const ProgramResult result = run_program(
+            opal_render + " " + examples + "/precious_opal/scene.toml -o " + (*folder_ / (name + ".exr")).string() +
+            " --set object.0.file=" + (*folder_ / "opal.vdb").string() +
+            " --set render.width=128 --set render.height=96 --set render.filter=box --spp 896 --set environment.rotate_deg=" +
+            std::to_string(rotate_deg) + " --seed " + std::to_string(seed));
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return {read_image(*folder_ / (name + ".exr"))};
     }
@@ -137,7 +137,9 @@ TEST_F(PreciousOpal, ColorsChangeWhenTheLightTurns) {
     std::printf(
         "hue bin of saturated pixels: %.1f %% change when the light turns by 10 degrees, %.1f %% with other random numbers\n",
         100.0 * by_light, 100.0 * by_noise);
-    // A pixel that other random numbers would have changed anyway says nothing: of the others, 20 % must change (measured: 25 %).
+    // A pixel that other random numbers would have changed anyway says nothing: of the others, a fifth must change. Five renders
+    // with other random numbers and grain walks gave 0.30 to 0.36 (box filter; the tent mixes neighbouring patches: 0.25 to
+    // 0.29); light that changes nothing gives 0.
     EXPECT_GE((by_light - by_noise) / (1.0 - by_noise), 0.20);
     EXPECT_LE(by_noise, 0.25);
 }

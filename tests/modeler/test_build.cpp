@@ -273,5 +273,13 @@ TEST(Info, TellsDisorderBoundariesAndFields) {
     EXPECT_NE(text.find("stacking faults 0.2 per layer, mosaic spread 1.5 degrees"), std::string::npos) << text;
 }
 
+/// With sites alone in the file besides the shape, which nothing else would miss.
+TEST(Build, ShapesThinnerThanVoxelsAreRefused) {
+    const std::string thin =
+        "[shape]\nkind = \"ellipsoid\"\nsize_mm = [0.65, 0.5, 0.025]\n[grains]\nresolution = 12\nnum_sites = 3\n"
+        "[output]\ngrids = [\"shape\", \"sites\"]\n";
+    EXPECT_NE(input_error_of([&] { build(thin); }).find("no voxel's centre lies inside the shape"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace opal

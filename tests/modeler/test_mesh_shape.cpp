@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "modeler/mesh_file.h"
 #include "modeler/sites.h"
 #include "modeler_test_tools.h"
 
@@ -272,6 +273,22 @@ TEST(MeshShape, FilesThatAreNoMeshAreRefused) {
     EXPECT_NE(error_for(write_test_file("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")).find("points.obj"), std::string::npos);
     EXPECT_NE(error_for(write_test_file("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n")).find("flat.obj"),
               std::string::npos);
+}
+
+/// What a library of mesh readers would not come back from.
+TEST(MeshShape, DamagedPlyIsRefused) {
+    const std::string good = ply_cuboid({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+    const auto error_with = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        text.replace(text.find(from), from.size(), to);
+        const std::string file = write_test_file("damaged.ply", text);
+        return input_error_of([&] { read_mesh_file(file, 1.0); });
+    };
+    EXPECT_NE(error_with("end_header", "end_headr").find("its header does not end"), std::string::npos);
+    EXPECT_NE(error_with("vertex 8", "vertex 80000000").find("states '80000000' elements 'vertex'"), std::string::npos);
+    EXPECT_NE(error_with("vertex 8", "99999999 8").find("states '8' elements '99999999'"), std::string::npos);
+    EXPECT_NE(error_with("\n3 ", "\n3 3000000000 ").find("damaged.ply"), std::string::npos);
+    EXPECT_NE(error_with("\n3 ", "\n ").find("damaged.ply"), std::string::npos);
 }
 
 }  // namespace

@@ -131,5 +131,14 @@ TEST(SiteFiles, ClusteredSitesAreMeasuredSoon) {
     EXPECT_LT(sites.shortest_distance_mm, 1.0e-4);
 }
 
+TEST(SiteFiles, SitesInAnotherUnitThanTheShapeAreRefused) {
+    const std::string file = write_test_file("metres.csv", "0.01,0,0\n0,0.02,0\n0,0,0.01\n-0.01,0,0\n");
+    const GrainsRecipe grains = from_file(file);
+    EXPECT_NE(input_error_of([&] { sample_sites(*ball(), grains); }).find("of the shape's 10 mm; allowed: from a hundredth"),
+              std::string::npos);
+    const GrainsRecipe scaled = from_file(file, 100.0);
+    EXPECT_EQ(sample_sites(*ball(), scaled).positions_mm.size(), 4u);
+}
+
 }  // namespace
 }  // namespace opal

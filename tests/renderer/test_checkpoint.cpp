@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "formats/error.h"
+#include "../formats/expect_error.h"
 #include "plane_scene.h"
 #include "renderer/host/checkpoint.h"
 #include "small_opal.h"
@@ -139,6 +139,15 @@ TEST(Checkpoint, DamageIsNoticed) {
     for (const std::size_t length : {std::size_t(0), std::size_t(5), std::size_t(40), good.size() / 2, good.size() - 1})
         expect_refused(good.substr(0, length));
     expect_refused(good + "x");
+    // A damaged header is called damaged, not that of another render.
+    const std::size_t header_end =
+        16 + std::size_t(static_cast<unsigned char>(good[12])) + 256 * std::size_t(static_cast<unsigned char>(good[13]));
+    for (std::size_t i = 16; i < header_end; ++i) {
+        std::string flipped = good;
+        flipped[i] = char(flipped[i] ^ 0x01);
+        std::ofstream(path, std::ios::binary) << flipped;
+        EXPECT_INPUT_ERROR(read_checkpoint_header(path), "it is damaged: the checksum does not fit its header");
+    }
     // Another film: another size, or without spectral layers.
     std::ofstream(path, std::ios::binary) << good;
     for (const char* other : {"render.width=40", "film.spectral=false"}) {

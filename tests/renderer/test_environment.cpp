@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "../formats/expect_error.h"
 #include "formats/image.h"
 #include "renderer/host/environment_map.h"
@@ -64,9 +66,44 @@ TEST(Environment, FilesAreOrientedAndChecked) {
     image.pixel(2, 1)[1] = -1.0f;
     write_exr(folder / "negative.exr", image);
     description.file = folder / "negative.exr";
-    EXPECT_INPUT_ERROR(make_environment(description), "texel (2, 1) is -1");
+    EXPECT_INPUT_ERROR(make_environment(description), "the lowest, -1, at texel (2, 1); together");
+    image.pixel(2, 1)[1] = std::nanf("");
+    write_exr(folder / "nan.exr", image);
+    description.file = folder / "nan.exr";
+    EXPECT_INPUT_ERROR(make_environment(description), "texel (2, 1) is nan");
     description.file = folder / "missing.exr";
     EXPECT_INPUT_ERROR(make_environment(description), "no such image file");
+}
+
+/// As a filter with negative lobes leaves them beside a bright edge.
+TEST(Environment, SlightlyNegativeTexelsCountAsNone) {
+    const ScratchFolder folder;
+    Image image;
+    image.width = 4;
+    image.height = 2;
+    image.channel_names = {"R", "G", "B"};
+    image.pixels.assign(24, 1.0f);
+    image.pixel(1, 0)[0] = 0.0f;
+    write_exr(folder / "clean.exr", image);
+    image.pixel(1, 0)[0] = -0.05f;
+    write_exr(folder / "ringing.exr", image);
+    EnvironmentDescription description;
+    description.kind = EnvironmentKind::file;
+    std::vector<std::string> notices;
+    description.file = folder / "clean.exr";
+    const EnvironmentMap clean = make_environment(description, Upsampling::jakob_hanika, &notices);
+    EXPECT_TRUE(notices.empty());
+    description.file = folder / "ringing.exr";
+    const EnvironmentMap ringing = make_environment(description, Upsampling::jakob_hanika, &notices);
+    ASSERT_EQ(notices.size(), 1u);
+    EXPECT_NE(notices[0].find("1 values of texels are negative, the lowest, -0.05, at texel (1, 0)"), std::string::npos);
+    EXPECT_EQ(ringing.mean_luminance, clean.mean_luminance);
+    EXPECT_EQ(ringing.column_cdf, clean.column_cdf);
+    // 0.3 of 23 is more than a hundredth.
+    image.pixel(1, 0)[0] = -0.3f;
+    write_exr(folder / "negative.exr", image);
+    description.file = folder / "negative.exr";
+    EXPECT_INPUT_ERROR(make_environment(description), "allowed: 0.01");
 }
 
 }  // namespace

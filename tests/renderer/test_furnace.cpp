@@ -112,6 +112,14 @@ TEST(Furnace, EveryFeature) {
     expect_invisible(small, "[opal]\ncompanions = 7\ndispersion = \"bands\"\n", 110, 0.005);
 }
 
+/// In a dense body guiding must not move the light into samples too rare to be met: five optical depths per mm, bodies of mm.
+TEST(Furnace, GuidedScatteringInADenseBody) {
+    SmallOpal small;
+    small.constants.sigma_s_mie_per_mm = 5.0;
+    expect_invisible(small, "[opal]\ndiffraction = \"none\"\n", 48, 0.004, "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\n",
+                     "guided = true\nmax_bounces = 4096\n");
+}
+
 /// Half of the scattered light drawn towards where photons came from.
 TEST(Furnace, GuidedScattering) {
     SmallOpal small;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "formats/error.h"
+#include "../formats/expect_error.h"
 #include "formats/random.h"
 #include "renderer/host/image_comparison.h"
 
@@ -80,9 +80,9 @@ TEST(ImageComparison, RefusesWhatCannotBeCompared) {
     cropped.height -= 1;
     other.channel_names = {"X", "Y", "Z", "variance.R", "variance.G", "variance.B"};
     broken.pixel(3, 2)[0] = std::nanf("");
-    EXPECT_THROW(compare_images(good, cropped, 0.0), InputError);
-    EXPECT_THROW(compare_images(other, good, 0.0), InputError);
-    EXPECT_THROW(compare_images(good, broken, 0.0), InputError);
+    EXPECT_INPUT_ERROR(compare_images(good, cropped, 0.0, "a.exr", "b.exr"), "b.exr");
+    EXPECT_INPUT_ERROR(compare_images(other, good, 0.0, "a.exr", "b.exr"), "a.exr: has no channels R, G, B");
+    EXPECT_INPUT_ERROR(compare_images(good, broken, 0.0, "a.exr", "b.exr"), "b.exr: pixel (3, 2) is not a finite number");
 }
 
 }  // namespace

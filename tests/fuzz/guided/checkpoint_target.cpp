@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "../entry_points.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
+    opal::fuzz::check_checkpoint_bytes({reinterpret_cast<const char*>(data), size});
+    return 0;
+}
