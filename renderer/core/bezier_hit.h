@@ -15,6 +15,8 @@ struct PatchPiece {
     uint32_t patch;
     float u0, v0, width;  ///< parameters of the patch from u0, v0 on; exact binary fractions
     float largest_mm;     ///< coordinate
+    float normal[3];      ///< unit axis of a cone that holds all normals
+    float normal_sine;    ///< of its half angle; above 1 where it is no cone
 };
 
 /// A surface of patches, cut into pieces for the tree of bounds.
@@ -36,16 +38,16 @@ namespace bezier_detail {
 struct Bicubic {
     double c[4][4];
 
-    /// Whether the coefficients bound it away from zero; by columns first, four at a time.
-    OPAL_HD bool stays_off(double room) const {
-        double least[4], most[4];
-        column_bounds(least, most);
-        return least_of(least) > room || most_of(most) < -room;
-    }
+    /// Whether the coefficients bound it away from zero, or from an interval.
+    OPAL_HD bool stays_off(double room) const { return stays_outside(-room, room); }
     OPAL_HD bool stays_outside(double low, double high) const {
-        double least[4], most[4];
-        column_bounds(least, most);
-        return most_of(most) <= low || least_of(least) >= high;
+        int below = 0, above = 0;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                below += c[i][j] < low ? 1 : 0;
+                above += c[i][j] > high ? 1 : 0;
+            }
+        return below == 16 || above == 16;
     }
     /// Of a third of the derivative along s, or along t.
     OPAL_HD void slope_bounds(bool along_s, double& low, double& high) const {
@@ -104,11 +106,6 @@ struct Bicubic {
     }
     OPAL_HD static double least_of(const double (&x)[4]) { return min_of(min_of(x[0], x[1]), min_of(x[2], x[3])); }
     OPAL_HD static double most_of(const double (&x)[4]) { return max_of(max_of(x[0], x[1]), max_of(x[2], x[3])); }
-    OPAL_HD void column_bounds(double (&least)[4], double (&most)[4]) const {
-        for (int j = 0; j < 4; ++j) least[j] = most[j] = c[0][j];
-        for (int i = 1; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) widen(c[i][j], least[j], most[j]);
-    }
 };
 
 /// A piece's component along an axis, less the ray's origin's.
@@ -198,12 +195,19 @@ OPAL_HD inline PatchHit meet_piece(const PatchPiece& piece, const Ray& ray, floa
     boxes[0].halvings_s = boxes[0].halvings_t = 0;
 
     double nearest_mm = double(max_mm);
+    const double facing =
+        fabs(double(piece.normal[0]) * along[0] + double(piece.normal[1]) * along[1] + double(piece.normal[2]) * along[2]);
+    const bool from_one_side = facing > double(piece.normal_sine);
+    bool all_of_it = true;  // the box is the whole piece
     for (int count = 1; count > 0;) {
         PatchBox& box = boxes[--count];
         if (box.along.stays_outside(0.0, nearest_mm)) continue;
         if (box.across[0].stays_off(rounding_mm) || box.across[1].stays_off(rounding_mm)) continue;
         double s = 0.5, t = 0.5;
-        const bool folds = may_fold(box), met = !folds && find_root(box, rounding_mm, s, t);
+        // So flat a piece, looked at from one side alone, is met once.
+        const bool folds = !(all_of_it && from_one_side) && may_fold(box);
+        const bool met = !folds && find_root(box, rounding_mm, s, t);
+        all_of_it = false;
         const double width_s = 1.0 / double(1 << box.halvings_s), width_t = 1.0 / double(1 << box.halvings_t);
         if (!met && (box.halvings_s < most_halvings || box.halvings_t < most_halvings)) {
             const bool halve_s = box.halvings_s <= box.halvings_t;

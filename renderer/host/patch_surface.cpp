@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/host/patch_surface.h"
 
+#include <openvdb/Types.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -115,12 +117,39 @@ void part_of_curve(const double (&curve)[4], double a, double width, double (&pa
     }
 }
 
+/// A cone that holds the normals of a piece: they are sums, with weights that are not negative, of the products of its control
+/// points' differences along one parameter with those along the other (Sederberg & Meyers 1988, "Loop detection in surface patch
+/// intersections").
+void bound_normals(PatchPiece& piece) {
+    std::vector<openvdb::Vec3d> products;
+    const auto difference = [&](int i, int j, int k, int l) {
+        return openvdb::Vec3d(piece.control_mm[0][k][l] - piece.control_mm[0][i][j],
+                              piece.control_mm[1][k][l] - piece.control_mm[1][i][j],
+                              piece.control_mm[2][k][l] - piece.control_mm[2][i][j]);
+    };
+    openvdb::Vec3d axis(0.0);
+    for (int i = 0; i < 12; ++i)
+        for (int j = 0; j < 12; ++j) {
+            openvdb::Vec3d product = difference(i / 4, i % 4, i / 4 + 1, i % 4).cross(difference(j / 3, j % 3, j / 3, j % 3 + 1));
+            if (!product.normalize(0.0)) continue;
+            products.push_back(product);
+            axis += product;
+        }
+    piece.normal_sine = 2.0f;
+    if (!axis.normalize(0.0)) return;
+    double least_cosine = 1.0;
+    for (const openvdb::Vec3d& product : products) least_cosine = std::min(least_cosine, product.dot(axis));
+    for (int k = 0; k < 3; ++k) piece.normal[k] = float(axis[k]);
+    // Wider than this a piece is no longer flat.
+    if (least_cosine > 0.8) piece.normal_sine = float(std::sqrt(1.0 - least_cosine * least_cosine) + 1.0e-6);
+}
+
 /// Halved alike along both parameters; parts is a power of two.
 void add_pieces(const BezierPatch& patch, std::uint32_t number, int parts, std::vector<PatchPiece>& pieces) {
     const double width = 1.0 / parts;
     for (int i = 0; i < parts; ++i)
         for (int j = 0; j < parts; ++j) {
-            PatchPiece piece;
+            PatchPiece piece = {};
             piece.patch = number;
             piece.u0 = float(i * width);
             piece.v0 = float(j * width);
@@ -144,6 +173,7 @@ void add_pieces(const BezierPatch& patch, std::uint32_t number, int parts, std::
                 for (const auto& row : axis)
                     for (const double coordinate : row) largest_mm = std::max(largest_mm, std::abs(coordinate));
             piece.largest_mm = float(largest_mm);
+            bound_normals(piece);
             pieces.push_back(piece);
         }
 }
