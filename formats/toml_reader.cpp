@@ -163,7 +163,8 @@ namespace {
 
 /// Of a number; whole ones beyond 2^53 are rounded.
 double as_double(const toml::node& node) {
-    return node.is_integer() ? static_cast<double>(*node.value<std::int64_t>()) : *node.value<double>();
+    // Minus zero becomes zero: written as "-0" it would be read again as the integer 0, and a scene would differ from itself.
+    return node.is_integer() ? static_cast<double>(*node.value<std::int64_t>()) : *node.value<double>() + 0.0;
 }
 
 }  // namespace

@@ -142,6 +142,12 @@ TEST(Scene, ErrorsAreLocated) {
     EXPECT_INPUT_ERROR(parse(minimal, {"camera.position_mm=[9007199254740993,0,0]"}), "is out of range");
 }
 
+TEST(Scene, MinusZeroIsZero) {
+    const std::string text = scene_to_toml(parse(minimal, {"object.0.translate_mm=[0.0,-0.0,-0.00]"}));
+    EXPECT_EQ(scene_to_toml(parse_scene(text, "x.toml", {})), text);
+    EXPECT_EQ(text.find("-0"), std::string::npos);
+}
+
 TEST(Scene, ControlCharactersOfNamesSurvive) {
     const std::string text = "[[object]]\nkind = \"opal\"\nfile = \"a.vdb\"\nname = \"x\\n\\t\\u001b[31m\\u007f\"\n";
     const SceneDescription scene = parse_scene(text, "test.toml", {});

@@ -92,7 +92,7 @@ bool check_opal_metadata_text(const std::string& text) {
     openvdb::MetaMap metadata = sound_metadata();
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)
-        if (const std::size_t equals = line.find(" = "); equals != std::string::npos)
+        if (const std::size_t equals = line.find(" = "); equals != std::string::npos && equals > 0)
             replace_entry(metadata, line.substr(0, equals), line.substr(equals + 3));
     OpalAsset asset;
     try {
