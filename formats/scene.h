@@ -47,7 +47,7 @@ struct RenderDescription {
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::sobol;
     LightSamplingKind light_sampling = LightSamplingKind::both;
-    bool guided = false;  ///< half of the scattered light is drawn towards where photons came from
+    bool guided = false;  ///< half of a path's first two scatterings are drawn towards where photons came from
     FilterKind filter = FilterKind::tent;
     double filter_radius_px = 1.0;
     std::optional<PixelWindow> crop;  ///< the part of the picture that is drawn; unset: all
