@@ -23,8 +23,10 @@ class Bvh {
     int depth() const { return depth_; }             ///< levels of nodes
     bool has_pieces() const { return has_pieces_; }  ///< of patches
 
-    /// `meshes`: views of the meshes that it was built from; they and this must outlive it.
-    BvhView<true> view(const MeshView* meshes) const {
+    /// `meshes`: views of the meshes that it was built from; they and this must outlive it. `with_pieces`: false only where there
+    /// are none.
+    template <bool with_pieces>
+    BvhView<with_pieces> view(const MeshView* meshes) const {
         return {root_, reach_mm_, nodes_.data(), primitives_.data(), std::uint32_t(primitives_.size()), meshes};
     }
 

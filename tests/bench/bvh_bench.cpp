@@ -30,7 +30,7 @@ double closest_ns(const Intersector& intersector, const std::vector<Ray>& rays) 
 std::string row(const ComparedScene& scene, std::uint64_t count) {
     const Bvh bvh(scene.meshes);
     const std::vector<MeshView> views = views_of(scene.meshes);
-    const BvhView<true> view = bvh.view(views.data());
+    const BvhView<true> view = bvh.view<true>(views.data());
     const EmbreeScene embree(scene.meshes);
     const BvhComparison result = compare_with_embree(scene, view, embree, 0, count);
     std::vector<Ray> rays;
