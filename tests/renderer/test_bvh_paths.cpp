@@ -90,8 +90,10 @@ TEST(Bvh, GivesThePathTracerEmbreesPicturesOfExactSurfaces) {
     OpalAsset asset = SmallOpal().make();
     asset.bezier_patches = round_body(2.6, 1.8, 1.2);
     write_opal_asset(asset, folder / "opal.vdb");
-    expect_embrees_picture<true>(
-        ground + "[[object]]\nkind = \"opal\"\nexact = true\nfile = '" + (folder / "opal.vdb").string() + "'\n", 20);
+    expect_embrees_picture<true>("[opal]\ndiffraction = \"none\"\n" + ground +
+                                     "[[object]]\nkind = \"opal\"\nexact = true\nfile = '" + (folder / "opal.vdb").string() +
+                                     "'\n",
+                                 20);
 }
 
 }  // namespace
