@@ -9,6 +9,13 @@
 #define OPAL_HD
 #endif
 
+/// Large functions that a device's compiler is to keep as one copy: it would take minutes over each more.
+#if defined(__CUDACC__)
+#define OPAL_HD_LARGE __host__ __device__ __noinline__
+#else
+#define OPAL_HD_LARGE
+#endif
+
 /// Before a short loop over lanes without branches or calls: asks the host compiler to vectorize it.
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define OPAL_SIMD _Pragma("omp simd")
