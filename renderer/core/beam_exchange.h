@@ -99,7 +99,6 @@ template <int N>
 OPAL_HD inline void weigh_exchange(const GrainVisit<N>& visit, const BeamExchange& exchange, LaneWeights<N>& weights) {
     float logarithms[N] = {};
     for (int d = 0; d < 2; ++d) {
-        if (exchange.flown_mm[d] == 0.0f) continue;
         const GrainRates<N>& rates = visit.rates[d];
         // Flights and turns apart may be beyond a float's range where together they are not.
         OPAL_SIMD

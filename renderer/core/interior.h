@@ -144,25 +144,26 @@ OPAL_HD inline bool exchange_in_grain(const OpalView& opal, const PathWavelength
     const BeamExchange exchange = exchange_beams(visit, region, object_per_world, flight.scatter_distance_mm(), random);
     next = exchange.next;
     const float path_mm = exchange.path_mm();
-    if (path_mm == 0.0f) return false;
+    const uint64_t turns = uint64_t(exchange.turns[0] + exchange.turns[1]);
+    if (turns == 0 && path_mm == 0.0f) return false;
     clear_known = false;
     weigh_exchange(visit, exchange, weights);
-    const uint64_t turns = uint64_t(exchange.turns[0] + exchange.turns[1]);
     counters.diffractions += turns;
     counters.turns_back += turns;
     const Vec3 offset = exchange.flown_mm[0] * visit.rates[0].direction + exchange.flown_mm[1] * visit.rates[1].direction;
     visit.clear_mm = max_of(0.0f, visit.clear_mm - length(offset));
     ray = {ray.origin + offset, visit.present().direction};
     flight.begin_again(path_mm, weights);
+    if (!exchange.scattered && exchange.turned_by < 0) return false;
     event = {InteriorEventKind::diffraction, ray.origin, ray.direction, false};
     if (exchange.scattered) {
         scatter(opal, wavelengths, medium, visit, weights, random, counters, event);
-    } else if (exchange.turned_by >= 0) {
+    } else {
         ++counters.diffractions;
         take_turn(visit.present(), exchange.turned_by, weights);
         event.direction = turn_visit(opal, visit, visit.present().pair[exchange.turned_by]);
     }
-    return exchange.scattered || exchange.turned_by >= 0;
+    return true;
 }
 
 /// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface; `ray` is then the last of the
