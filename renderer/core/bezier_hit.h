@@ -23,6 +23,7 @@ struct PatchPiece {
 struct PatchMeshView {
     const BezierPatch* patches = nullptr;  ///< world space; null where triangles are the surface
     const PatchPiece* pieces = nullptr;
+    uint32_t num_patches = 0, num_pieces = 0;
 };
 
 /// Where a ray meets a patch.

@@ -21,6 +21,18 @@ struct PathCounters {
     uint64_t truncated_paths = 0;
     uint64_t not_a_number = 0;
     uint64_t majorant_violations = 0;  ///< tentative collisions where a field exceeds its bounds
+
+    OPAL_HD void add(const PathCounters& other) {
+        diffractions += other.diffractions;
+        turns_back += other.turns_back;
+        scatterings += other.scatterings;
+        grain_crossings += other.grain_crossings;
+        multi_beam_stays += other.multi_beam_stays;
+        lost_paths += other.lost_paths;
+        truncated_paths += other.truncated_paths;
+        not_a_number += other.not_a_number;
+        majorant_violations += other.majorant_violations;
+    }
 };
 
 enum class InteriorEventKind { surface, diffraction, scattering };

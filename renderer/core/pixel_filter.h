@@ -21,7 +21,9 @@ inline constexpr float gaussian_filter_sigmas = 3.0f;
 
 /// Coefficients of the four-term window of Harris 1978 ("On the use of windows for harmonic analysis with the discrete Fourier
 /// transform", -92 dB), centred: w(x) = sum a_k cos(k pi x / radius).
-inline constexpr float blackman_harris_a[4] = {0.35875f, 0.48829f, 0.14128f, 0.01168f};
+OPAL_HD constexpr float blackman_harris_term(int k) {
+    return k == 0 ? 0.35875f : (k == 1 ? 0.48829f : (k == 2 ? 0.14128f : 0.01168f));
+}
 
 /// Probability density (1/px) of one coordinate of a sample's offset from the pixel's centre.
 OPAL_HD inline float pixel_filter_density(const PixelFilter& filter, float x_px) {
@@ -40,18 +42,18 @@ OPAL_HD inline float pixel_filter_density(const PixelFilter& filter, float x_px)
         case PixelFilterKind::blackman_harris:
             break;
     }
-    float sum = blackman_harris_a[0];
-    for (int k = 1; k < 4; ++k) sum += blackman_harris_a[k] * cosf(float(k) * pi_f * t);
-    return sum / (2.0f * blackman_harris_a[0] * filter.radius_px);
+    float sum = blackman_harris_term(0);
+    for (int k = 1; k < 4; ++k) sum += blackman_harris_term(k) * cosf(float(k) * pi_f * t);
+    return sum / (2.0f * blackman_harris_term(0) * filter.radius_px);
 }
 
 /// Probability that |x| < t * radius.
 OPAL_HD inline float pixel_filter_mass_within(PixelFilterKind kind, float t) {
     if (kind == PixelFilterKind::gaussian)
         return erff(gaussian_filter_sigmas * t * sqrtf(0.5f)) / erff(gaussian_filter_sigmas * sqrtf(0.5f));
-    float sum = blackman_harris_a[0] * t;
-    for (int k = 1; k < 4; ++k) sum += blackman_harris_a[k] * sinf(float(k) * pi_f * t) / (float(k) * pi_f);
-    return sum / blackman_harris_a[0];
+    float sum = blackman_harris_term(0) * t;
+    for (int k = 1; k < 4; ++k) sum += blackman_harris_term(k) * sinf(float(k) * pi_f * t) / (float(k) * pi_f);
+    return sum / blackman_harris_term(0);
 }
 
 /// The t in [0, 1] with that mass within it: Newton's method, kept inside a shrinking bracket. The density falls from the centre

@@ -24,6 +24,7 @@ struct MeshView {
     const Vec3* positions = nullptr;
     const Vec3* normals = nullptr;  ///< per vertex, outward; null where the faces are flat
     const uint32_t* indices = nullptr;
+    uint32_t num_vertices = 0, num_triangles = 0;
     int material = -1;      ///< of an opaque surface; -1 where it bounds a body
     int body = -1;          ///< that the surface bounds; -1 where it is opaque
     PatchMeshView patches;  ///< of an exact surface
@@ -41,6 +42,7 @@ struct OpalView {
     FieldView shape;                           ///< level set of the surface, object mm; its grid may be absent
     const Quaternion* orientations = nullptr;  ///< lattice -> object; element g - 1 is grain g's
     const float* grain_size_mm = nullptr;      ///< object mm; element g - 1: diameter of a ball as large as grain g
+    int num_grains = 0;
     const float* n_eff = nullptr;              ///< 1 nm table: effective index where light diffracts
     const float* contrast = nullptr;           ///< 1 nm table: |n_sphere^2 - n_medium^2|
     const float* relative_index = nullptr;     ///< 1 nm table: n_sphere / n_medium
@@ -90,6 +92,7 @@ struct SceneView {
     const OpalView* bodies = nullptr;  ///< in the order of their priorities, the highest last
     const MeshView* meshes = nullptr;
     const MaterialView* materials = nullptr;
+    int num_bodies = 0, num_meshes = 0, num_materials = 0;
     NestedBodies camera_bodies;  ///< that all rays of the camera start in
     NestedBodies cut_bodies;     ///< that some of its rays start in, see camera_bodies.h
     int width = 0, height = 0;

@@ -4,10 +4,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "formats/error.h"
+#include "renderer/host/piece_bounds.h"
 
 namespace opal {
 namespace {
@@ -27,22 +27,9 @@ void fill_ray(RTCRay& target, const Ray& ray) {
     target.flags = 0;
 }
 
-/// Bounds of a piece: those of its control points, and a float's rounding.
-void piece_bounds(const RTCBoundsFunctionArguments* call) {
-    const auto& mesh = *static_cast<const MeshData*>(call->geometryUserPtr);
-    float low[3], high[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        double least = std::numeric_limits<double>::infinity(), most = -least;
-        for (const auto& row : mesh.pieces[call->primID].control_mm[axis])
-            for (const double coordinate : row) {
-                least = std::min(least, coordinate);
-                most = std::max(most, coordinate);
-            }
-        const double rounding = 1.0e-6 * (1.0e-3 + std::max(std::abs(least), std::abs(most)));
-        low[axis] = float(least - rounding);
-        high[axis] = float(most + rounding);
-    }
-    *call->bounds_o = {low[0], low[1], low[2], 0.0f, high[0], high[1], high[2], 0.0f};
+void bounds_of_piece(const RTCBoundsFunctionArguments* call) {
+    const PieceBounds bounds = piece_bounds(static_cast<const MeshData*>(call->geometryUserPtr)->pieces[call->primID]);
+    *call->bounds_o = {bounds.low[0], bounds.low[1], bounds.low[2], 0.0f, bounds.high[0], bounds.high[1], bounds.high[2], 0.0f};
 }
 
 /// Asked for one ray at a time.
@@ -89,7 +76,7 @@ RTCGeometry EmbreeScene::exact_surface(const MeshData& mesh) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, unsigned(mesh.pieces.size()));
     rtcSetGeometryUserData(geometry, const_cast<MeshData*>(&mesh));
-    rtcSetGeometryBoundsFunction(geometry, piece_bounds, nullptr);
+    rtcSetGeometryBoundsFunction(geometry, bounds_of_piece, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersect_piece);
     rtcSetGeometryOccludedFunction(geometry, occlude_by_piece);
     return geometry;

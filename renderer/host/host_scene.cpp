@@ -142,6 +142,9 @@ HostScene::HostScene(const SceneDescription& description, const std::array<doubl
     }
     for (const MeshData& mesh : meshes_) mesh_views_.push_back(mesh.view());
     view_.bodies = bodies_.data();
+    view_.num_bodies = int(bodies_.size());
+    view_.num_meshes = int(mesh_views_.size());
+    view_.num_materials = int(materials_.size());
     view_.spectra = spectra_.view();
     view_.environment = environment_.view();
     view_.lights = lights_.view();

@@ -21,9 +21,19 @@ struct MeshData {
     float deviation_mm = 0.0f;         ///< how far the triangles may be from the surface
 
     MeshView view() const {
-        return {positions.data(), normals.empty() ? nullptr : normals.data(), indices.data(), material, body, patch_view()};
+        return {positions.data(),
+                normals.empty() ? nullptr : normals.data(),
+                indices.data(),
+                std::uint32_t(positions.size()),
+                std::uint32_t(indices.size() / 3),
+                material,
+                body,
+                patch_view()};
     }
-    PatchMeshView patch_view() const { return {patches.empty() ? nullptr : patches.data(), pieces.data()}; }
+    PatchMeshView patch_view() const {
+        return {patches.empty() ? nullptr : patches.data(), pieces.data(), std::uint32_t(patches.size()),
+                std::uint32_t(pieces.size())};
+    }
 };
 
 /// A square of edge `size_mm` at z = 0, facing up.

@@ -99,6 +99,7 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     opal.shape = shape_->view();
     for (const auto& q : asset.grain_orientations) orientations_.push_back({q[0], q[1], q[2], q[3]});
     opal.orientations = orientations_.data();
+    opal.num_grains = int(orientations_.size());
 
     recipe_toml_ = asset.recipe_toml;
     const OpalConstants& constants = asset.constants;

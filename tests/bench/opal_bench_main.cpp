@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "bvh_bench.h"
 #include "color_bench.h"
 #include "convergence_bench.h"
 #include "formats/atomic_file.h"
@@ -25,6 +26,7 @@ struct BenchArguments {
     bool quick = false;
     std::string scenes = "examples/media_checks";
     int samples = 16;
+    int rays = 10'000'000;
 };
 
 int run_modeler(const BenchArguments& arguments) {
@@ -83,6 +85,10 @@ int run_bench(int argc, char** argv) {
     CLI::App* const modeler = app.add_subcommand("modeler", "opal-model: labelling, builds, memory (some minutes)");
     modeler->add_option("-o,--output", arguments.folder, "folder for modeler.csv")->required()->type_name("DIR");
     modeler->add_flag("--quick", arguments.quick, "an eighth of the voxels (about a minute)");
+    CLI::App* const bvh =
+        app.add_subcommand("bvh", "rays against triangles and patches: devices' hierarchy and Embree (a minute)");
+    bvh->add_option("-o,--output", arguments.folder, "folder for bvh.csv")->required()->type_name("DIR");
+    bvh->add_option("--rays", arguments.rays, "over all scenes")->check(CLI::Range(1000, 1 << 30))->capture_default_str();
     CLI::App* const media = app.add_subcommand("media", "flights through fields: majorants and estimators (about a minute)");
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
@@ -117,6 +123,10 @@ int run_bench(int argc, char** argv) {
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (bvh->parsed()) {
+        opal::bench_bvh(arguments.folder, std::uint64_t(arguments.rays));
         return 0;
     }
     if (media->parsed()) return run_media(arguments.folder);
