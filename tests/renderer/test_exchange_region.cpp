@@ -37,7 +37,7 @@ TEST(ExchangeRegion, LiesInTheCell) {
             bounds.hold(half_mm * openvdb::Vec3d((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
                                                  (corner & 4) != 0 ? 1.0 : -1.0));
         const CellData cells(sites, bounds);
-        const CellField field = cells.view();
+        const CellField field = cells.field();
         int held = 0, inside = 0;
         for (std::uint64_t trial = 1000; trial < 3000; ++trial) {
             const auto coordinate = [&](std::uint32_t k) { return float(0.9 * half_mm * (2.0 * draw(trial, k) - 1.0)); };
