@@ -37,9 +37,10 @@ std::string row(const ComparedScene& scene, std::uint64_t count) {
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(count, scene.exact ? 50'000 : 500'000); ++i)
         rays.push_back(compared_ray(scene, RayKind(i % num_ray_kinds), i));
     const double ours_ns = closest_ns(view, rays), embree_ns = closest_ns(embree, rays);
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:.3g},{:.4g},{:.4g}\n", scene.name, bvh.primitives().size(),
+    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3g},{:.4g},{:.4g}\n", scene.name, bvh.primitives().size(),
                        bvh.depth(), result.rays, result.met, result.same, result.same_bits, result.ties, result.at_border,
-                       result.at_start, result.unexplained, result.wrong_occlusion, result.largest_share, ours_ns, embree_ns);
+                       result.edge_on, result.at_start, result.unexplained, result.wrong_occlusion, result.largest_share, ours_ns,
+                       embree_ns);
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ void bench_bvh(const std::filesystem::path& folder, std::uint64_t rays) {
     std::filesystem::create_directories(folder);
     AtomicFile file(folder / "bvh.csv");
     std::ofstream csv(file.temporary_path());
-    csv << "scene,primitives,levels,rays,met,same,same_bits,ties,at_border,at_start,unexplained,wrong_occlusion,"
+    csv << "scene,primitives,levels,rays,met,same,same_bits,ties,at_border,edge_on,at_start,unexplained,wrong_occlusion,"
            "largest_share_of_tolerance,ns_per_ray,embree_ns_per_ray\n";
     // A ray against patches takes a hundred times as long as one against triangles.
     const std::vector<ComparedScene> scenes = compared_scenes();

@@ -7,6 +7,7 @@
 
 #include "formats/random.h"
 #include "renderer/host/patch_surface.h"
+#include "renderer/host/piece_bounds.h"
 #include "round_body.h"
 
 namespace opal {
@@ -134,10 +135,29 @@ constexpr double rounding = 0x1p-20;
 
 /// What rounding explains at a hit.
 struct Tolerance {
-    double distance_mm;         ///< of the distance
-    double border_mm;           ///< of places across the ray
-    double to_border_mm = 0.0;  ///< from the ray to the triangle's border
+    double distance_mm;      ///< of the distance
+    double tie_mm;           ///< of the distances of two primitives that meet here
+    bool at_border = false;  ///< rounding may decide whether the triangle is met
+    bool edge_on = false;    ///< and its projection across the ray is no wider than rounding
 };
+
+/// Whether a ray is in a triangle is decided by its side of the three edges' lines, each of which may come out wrong within
+/// `room_mm` of the line: rounding decides where a line is so near and the farther ones do not rule the triangle out.
+void judge_border(const std::array<std::array<double, 3>, 3>& corner, const std::array<double, 3>& d, double room_mm,
+                  Tolerance& tolerance) {
+    int near = 0, left = 0, right = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::array<double, 3>& a = corner[i];
+        const std::array<double, 3>& b = corner[(i + 1) % 3];
+        const double length = size3(cross3(minus(b, a), d));
+        const double to_line_mm = length > 0.0 ? dot3(cross3(a, b), d) / length : 0.0;
+        near += std::abs(to_line_mm) <= room_mm ? 1 : 0;
+        left += to_line_mm > room_mm ? 1 : 0;
+        right += to_line_mm < -room_mm ? 1 : 0;
+    }
+    tolerance.at_border = near > 0 && (left == 0 || right == 0);
+    tolerance.edge_on = near == 3;
+}
 
 /// Distance t = N (a - o) / N d: the corners' places relative to the origin are off by a half-ulp u of their distance L; their
 /// products with N and d and the sums of three cost 3 u L / cos each; N itself, of edges of length l between corners that Embree
@@ -153,30 +173,23 @@ Tolerance triangle_tolerance(const ComparedScene& scene, const Ray& ray, const R
         corner[i] = minus(wide(mesh.positions[mesh.indices[3 * std::size_t(hit.triangle) + i]]), wide(ray.origin));
         reach = std::max(reach, size3(corner[i]));
     }
-    Tolerance tolerance{0.0, rounding * reach, 1.0e300};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::array<double, 3>& a = corner[i];
-        const std::array<double, 3> edge = minus(corner[(i + 1) % 3], a);
-        longest = std::max(longest, size3(edge));
-        // Across the ray, from 0 to the edge.
-        const std::array<double, 3> flat = minus(edge, {dot3(edge, d) * d[0], dot3(edge, d) * d[1], dot3(edge, d) * d[2]});
-        const std::array<double, 3> start = minus(a, {dot3(a, d) * d[0], dot3(a, d) * d[1], dot3(a, d) * d[2]});
-        const double square = dot3(flat, flat);
-        const double along = square > 0.0 ? std::clamp(-dot3(start, flat) / square, 0.0, 1.0) : 0.0;
-        const std::array<double, 3> nearest{start[0] + along * flat[0], start[1] + along * flat[1], start[2] + along * flat[2]};
-        tolerance.to_border_mm = std::min(tolerance.to_border_mm, size3(nearest));
-    }
+    for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, size3(minus(corner[(i + 1) % 3], corner[i])));
     const std::array<double, 3> normal = cross3(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
     const double across = std::abs(dot3(normal, d)), size = size3(normal);
-    tolerance.distance_mm = rounding * reach * (1.0 + longest * longest / size) * size / across;
+    const double distance_mm = rounding * reach * (1.0 + longest * longest / size) * size / across;
+    Tolerance tolerance{distance_mm, distance_mm};
+    judge_border(corner, d, rounding * reach, tolerance);
     return tolerance;
 }
 
 /// A place on a patch is known to 1e-14 of the coordinates; its distance is rounded to a float. Places on a common border of two
-/// pieces belong to both.
+/// pieces belong to both; at a pole and where a ray merely touches, meet_piece() leaves it at a part 2^-14 of the piece.
 Tolerance hit_tolerance(const ComparedScene& scene, const Ray& ray, const RayHit& hit) {
     if (scene.meshes[hit.mesh].patches.empty()) return triangle_tolerance(scene, ray, hit);
-    return {1.0e-9 + 0x1p-23 * double(hit.distance_mm), 0.0, 1.0};
+    const double distance_mm = 1.0e-9 + 0x1p-23 * double(hit.distance_mm);
+    const PieceBounds bounds = piece_bounds(scene.meshes[hit.mesh].pieces[hit.triangle]);
+    const Vec3 size{bounds.high[0] - bounds.low[0], bounds.high[1] - bounds.low[1], bounds.high[2] - bounds.low[2]};
+    return {distance_mm, distance_mm + 0x1p-14 * double(length(size))};
 }
 
 void compare_hits(const ComparedScene& scene, const Ray& ray, bool met, const RayHit& hit, bool embree_met,
@@ -205,8 +218,8 @@ void compare_hits(const ComparedScene& scene, const Ray& ray, bool met, const Ra
     }
     if (double(nearer.distance_mm) <= tolerance.distance_mm) {
         ++result.at_start;
-    } else if (tolerance.to_border_mm <= tolerance.border_mm) {
-        ++result.at_border;
+    } else if (tolerance.at_border) {
+        ++(tolerance.edge_on ? result.edge_on : result.at_border);
     } else {
         if (result.unexplained == 0) result.first_unexplained = index;
         ++result.unexplained;
@@ -288,20 +301,6 @@ Ray compared_ray(const ComparedScene& scene, RayKind kind, std::uint64_t index) 
 Vec3 compared_corner(const ComparedScene& scene, std::uint64_t index) {
     Numbers numbers(20, index);
     return edge_place(scene, numbers, true);
-}
-
-void BvhComparison::add(const BvhComparison& part) {
-    if (unexplained == 0) first_unexplained = part.first_unexplained;
-    rays += part.rays;
-    met += part.met;
-    same += part.same;
-    ties += part.ties;
-    at_start += part.at_start;
-    at_border += part.at_border;
-    unexplained += part.unexplained;
-    same_bits += part.same_bits;
-    wrong_occlusion += part.wrong_occlusion;
-    largest_share = std::max(largest_share, part.largest_share);
 }
 
 BvhComparison compare_with_embree(const ComparedScene& scene, const BvhView<true>& bvh, const EmbreeScene& embree,

@@ -51,13 +51,12 @@ struct BvhComparison {
     /// What one of them alone meets: within rounding of the ray's start, ...
     std::uint64_t at_start = 0;
     std::uint64_t at_border = 0;    ///< ... or of the triangle's border
+    std::uint64_t edge_on = 0;      ///< ... of a triangle that the ray sees edge-on, on its line
     std::uint64_t unexplained = 0;  ///< anything else
     std::uint64_t first_unexplained = 0;
     std::uint64_t same_bits = 0;        ///< of the distance, where the same triangle is met
     std::uint64_t wrong_occlusion = 0;  ///< where occluded() contradicts closest()
     double largest_share = 0.0;         ///< of the tolerance, that distances to the same triangle differ by
-
-    void add(const BvhComparison& part);
 };
 
 /// The rays [first, first + count) of a scene, kinds in turn.
