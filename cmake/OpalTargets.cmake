@@ -7,16 +7,17 @@ if(OPAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(opal_compile_options INTERFACE)
+# The host's compiler alone: a device's takes others.
 target_compile_options(opal_compile_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Werror
+  "$<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror>"
   # Mathematics without errno and trap semantics vectorizes; values are unchanged.
-  -fno-math-errno -fno-trapping-math -fopenmp-simd
-  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  "$<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno;-fno-trapping-math;-fopenmp-simd>"
+  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
 
 if(OPAL_AVX2 AND EXISTS /proc/cpuinfo)
   file(READ /proc/cpuinfo opal_cpuinfo)
   if(opal_cpuinfo MATCHES "avx2" AND opal_cpuinfo MATCHES "fma")
-    target_compile_options(opal_compile_options INTERFACE -mavx2 -mfma -mf16c -mbmi2)
+    target_compile_options(opal_compile_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-mavx2;-mfma;-mf16c;-mbmi2>")
   endif()
 endif()
 

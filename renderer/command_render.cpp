@@ -14,6 +14,7 @@
 #include "renderer/checkpoint_keeper.h"
 #include "renderer/cpu/aovs.h"
 #include "renderer/cpu/render_cpu.h"
+#include "renderer/device_choice.h"
 #include "renderer/host/development.h"
 #include "renderer/host/film_noise.h"
 #include "renderer/host/film_parts.h"
@@ -111,6 +112,7 @@ void print_summary(const RenderOptions& options, const SceneDescription& scene, 
 }  // namespace
 
 StillResult render_still(const RenderOptions& options, const SceneDescription& scene, OpalCache& opals) {
+    const DeviceChoice device = choose_device(options.device);
     require_writable(options.output);
     require_writable(options.png());
     if (!options.stats_file.empty()) require_writable(options.stats_file);
@@ -139,9 +141,10 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     {
         const std::unique_ptr<LiveView> live = live_view(options, film);
         Progress progress("rendering");
-        outcome =
-            render_cpu(host, intersector, {int(range.end), options.time_limit_s, scene.render.noise}, film,
-                       [&](const RenderProgress& p) { progress.update(p.fraction, [&] { return progress_note(p, film); }); });
+        outcome = render_cpu(
+            host, intersector, {int(range.end), options.time_limit_s, scene.render.noise}, film,
+            [&](const RenderProgress& p) { progress.update(p.fraction, [&] { return progress_note(p, film); }); },
+            device_maker(device, host.meshes()));
     }
     keeper.stop();
     if (film.total_samples() == 0) throw Interrupted();
@@ -162,7 +165,7 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     keeper.remove_or_keep(outcome.interrupted);
     stages.writing = watch.seconds();
     if (!options.stats_file.empty())
-        write_report(options.stats_file, render_report(scene, host, outcome, film, keeper, stages, threads));
+        write_report(options.stats_file, render_report(scene, host, outcome, film, keeper, stages, threads, device));
     print_summary(options, scene, outcome, film);
     return {std::move(display), outcome.interrupted};
 }

@@ -60,7 +60,8 @@ nlohmann::json grains_report(const HostScene& host) {
 }  // namespace
 
 nlohmann::json render_report(const SceneDescription& scene, const HostScene& host, const RenderOutcome& outcome, const Film& film,
-                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads) {
+                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads,
+                             const DeviceChoice& device) {
     const PathCounters& counters = outcome.counters;
     const std::uint64_t samples = film.total_samples();
     return {{"seconds",
@@ -73,6 +74,8 @@ nlohmann::json render_report(const SceneDescription& scene, const HostScene& hos
               {"writing", stages.writing}}},
             {"peak_memory_bytes", peak_memory_bytes()},
             {"threads", threads},
+            {"device", device.cuda ? "cuda" : "cpu"},
+            {"device_reason", device.reason},
             {"seed", scene.render.seed},
             {"interrupted", outcome.interrupted},
             {"counts",

@@ -6,6 +6,7 @@
 #include "formats/scene.h"
 #include "renderer/checkpoint_keeper.h"
 #include "renderer/cpu/render_cpu.h"
+#include "renderer/device_choice.h"
 
 namespace opal {
 
@@ -19,6 +20,7 @@ struct StageSeconds {
 
 /// What `--stats` writes: seconds per stage, peak memory, counts, energy per wavelength, versions, the resolved scene.
 nlohmann::json render_report(const SceneDescription& scene, const HostScene& host, const RenderOutcome& outcome, const Film& film,
-                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads);
+                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads,
+                             const DeviceChoice& device);
 
 }  // namespace opal

@@ -1,27 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/exchange_region.h"
+#include "renderer/core/exponential.h"
 #include "renderer/core/grain_visit.h"
 
 namespace opal {
 
-/// Light inside a band goes back and forth between two beams many times before it gets anywhere. As long as it stays in a ball
-/// within which neither the grain nor the body ends, nothing has to be looked up: this is the same random walk as flight by
-/// flight, with what the lanes' weights become gathered over it.
-template <int N>
+/// A flight whose end is drawn: its length and the family that turns the light there.
+struct PlannedTurn {
+    float length_mm = 0.0f;  ///< world
+    int family = -1;         ///< index into the present rates; -1: nothing is drawn yet
+};
+
+/// Light inside a band goes back and forth between two beams many times before it gets anywhere. As long as it stays where
+/// neither the grain nor the body ends, nothing has to be looked up: this is the same random walk as flight by flight, with what
+/// the lanes' weights become gathered over it.
 struct BeamExchange {
-    Vec3 offset;           ///< from where it began, world mm
-    float path_mm = 0.0f;  ///< flown in all
-    uint64_t turns = 0;
+    float flown_mm[2] = {0.0f, 0.0f};  ///< along each of the visit's two directions, world
+    float turns[2] = {0.0f, 0.0f};     ///< by the pair, out of each
     int turned_by = -1;      ///< family other than the pair's that turned the light in the end; index into the present rates
-    bool scattered = false;  ///< at the end of `path_mm`
+    bool scattered = false;  ///< at the end of it
+    PlannedTurn next;        ///< else the next flight, which may leave
+
+    OPAL_HD float path_mm() const { return flown_mm[0] + flown_mm[1]; }
 };
 
 /// Index of a pair of planes among the rates; -1 where it does not turn the hero.
 template <int N>
 OPAL_HD inline int find_family(const GrainRates<N>& rates, int pair) {
     for (int i = 0; i < rates.count; ++i)
-        if (rates.pair[i] == pair && rates.rate_per_mm[i][0] > 0.0f) return i;
+        if (rates.pair[i] == pair && rates.rate_per_mm[0][i] > 0.0f) return i;
     return -1;
 }
 
@@ -34,56 +43,77 @@ OPAL_HD inline bool exchanges_beams(const GrainVisit<N>& visit) {
     return visit.link >= 0 && visit.present_known && visit.present().total_per_mm[0] > exchange_min_rate_per_mm;
 }
 
-/// Walks from the present direction until the light leaves the ball of radius `clear_mm`, is turned by another family, or has
-/// flown `scatter_mm`. The visit's present direction is then that of the last flight.
+/// Walks from the present direction until a flight might leave the region, another family turns the light, or it has flown
+/// `scatter_mm`. The visit's present direction is then that of the last flight, or of the next one. `region_per_mm`: the region's
+/// millimetres in one of the world.
 template <int N>
-OPAL_HD inline BeamExchange<N> exchange_beams(GrainVisit<N>& visit, float clear_mm, float scatter_mm, LaneWeights<N>& weights,
-                                              PathRandom& random) {
-    BeamExchange<N> exchange;
-    const int family[2] = {find_family(visit.rates[0], visit.link), find_family(visit.rates[1], visit.link)};
-    float flown_mm[2] = {0.0f, 0.0f};  // along each of the two directions
-    float turns[2] = {0.0f, 0.0f};
+OPAL_HD inline BeamExchange exchange_beams(GrainVisit<N>& visit, const ExchangeRegion& region, float region_per_mm,
+                                           float scatter_mm, PathRandom& random) {
+    BeamExchange exchange;
+    int family[2];
+    float mean_mm[2], other_per_mm[2];  // to a turn by the pair, of turns by others
+    for (int d = 0; d < 2; ++d) {
+        const GrainRates<N>& rates = visit.rates[d];
+        family[d] = find_family(rates, visit.link);
+        const float back_per_mm = family[d] >= 0 ? rates.rate_per_mm[0][family[d]] : 0.0f;
+        mean_mm[d] = back_per_mm > 0.0f ? 1.0f / back_per_mm : 3.0e30f;
+        other_per_mm[d] = max_of(0.0f, rates.total_per_mm[0] - back_per_mm);
+    }
+    // What is left until each of them, wherever the light flies meanwhile.
+    float other_depth = free_depth(random.next());
+    const int first = visit.current;
     while (true) {
-        const int current = visit.current;
-        const GrainRates<N>& rates = visit.rates[current];
-        const Vec3 direction = rates.direction;
-        const float along = dot(exchange.offset, direction);
-        const float inside = clear_mm * clear_mm - dot(exchange.offset, exchange.offset);
-        const float leaves_mm = max_of(0.0f, sqrtf(max_of(0.0f, along * along + inside)) - along);
-        const float turn_mm = -logf(1.0f - random.next()) / rates.total_per_mm[0];
-        const float end_mm = min_of(leaves_mm, scatter_mm - exchange.path_mm);
-        const float flight_mm = min_of(turn_mm, end_mm);
-        flown_mm[current] += flight_mm;
-        exchange.path_mm += flight_mm;
-        exchange.offset = exchange.offset + flight_mm * direction;
-        if (turn_mm >= end_mm) {
-            exchange.scattered = end_mm < leaves_mm;
-            break;
-        }
-        ++exchange.turns;
-        const float u = random.next() * rates.total_per_mm[0];
-        const float back = family[current] >= 0 ? rates.rate_per_mm[family[current]][0] : 0.0f;
-        if (u >= back) {
-            exchange.turned_by = choose_family(rates, u - back, family[current]);
+        const int d = visit.current;
+        PlannedTurn turn{free_depth(random.next()) * mean_mm[d], family[d]};
+        if (other_depth < turn.length_mm * other_per_mm[d]) {
+            turn.length_mm = other_depth / other_per_mm[d];
+            turn.family = choose_family(visit.rates[d], random.next() * other_per_mm[d], family[d]);
             // Rounding alone may leave nobody else: then it was the pair.
-            if (exchange.turned_by >= 0) break;
+            if (turn.family < 0) turn.family = family[d];
         }
-        turns[current] += 1.0f;
-        visit.current = 1 - current;
+        const float length_mm = min_of(turn.length_mm, scatter_mm);
+        const float end_mm = region_per_mm * (exchange.flown_mm[d] + length_mm);
+        const float across_mm = region_per_mm * exchange.flown_mm[1 - d];
+        if (!region.holds(d == first ? end_mm : across_mm, d == first ? across_mm : end_mm)) {
+            exchange.next = turn;
+            return exchange;
+        }
+        exchange.flown_mm[d] += length_mm;
+        if (turn.length_mm >= scatter_mm) {
+            exchange.scattered = true;
+            return exchange;
+        }
+        if (turn.family != family[d]) {
+            exchange.turned_by = turn.family;
+            return exchange;
+        }
+        scatter_mm -= length_mm;
+        other_depth -= length_mm * other_per_mm[d];
+        exchange.turns[d] += 1.0f;
+        visit.current = 1 - d;
     }
-    for (int i = 1; i < weights.count; ++i) {
+}
+
+/// Every lane's probability of what happened between the two beams, over the hero's.
+template <int N>
+OPAL_HD inline void weigh_exchange(const GrainVisit<N>& visit, const BeamExchange& exchange, LaneWeights<N>& weights) {
+    float logarithms[N] = {};
+    for (int d = 0; d < 2; ++d) {
+        const GrainRates<N>& rates = visit.rates[d];
         // Flights and turns apart may be beyond a float's range where together they are not.
-        float logarithm = 0.0f;
-        for (int d = 0; d < 2; ++d) {
-            const GrainRates<N>& rates = visit.rates[d];
-            logarithm += (rates.total_per_mm[0] - rates.total_per_mm[i]) * flown_mm[d];
-            if (turns[d] == 0.0f) continue;
-            const float* rate_per_mm = rates.rate_per_mm[family[d]];
-            logarithm += rate_per_mm[i] > 0.0f ? turns[d] * logf(rate_per_mm[i] / rate_per_mm[0]) : -3.0e38f;
+        OPAL_SIMD
+        for (int i = 0; i < N; ++i) logarithms[i] += (rates.total_per_mm[0] - rates.total_per_mm[i]) * exchange.flown_mm[d];
+        if (exchange.turns[d] == 0.0f) continue;
+        const int family = find_family(rates, visit.link);
+        const float hero_per_mm = rates.rate_per_mm[0][family];
+        OPAL_SIMD
+        for (int i = 0; i < N; ++i) {
+            const float ratio = rates.rate_per_mm[i][family] / hero_per_mm;
+            logarithms[i] += ratio > 1.0e-37f ? exchange.turns[d] * logarithm(ratio) : -1.0e30f;
         }
-        weights.ratio.v[i] *= expf(logarithm);
     }
-    return exchange;
+    OPAL_SIMD
+    for (int i = 1; i < N; ++i) weights.ratio.v[i] *= exponential(logarithms[i]);
 }
 
 }  // namespace opal

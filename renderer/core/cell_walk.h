@@ -32,7 +32,7 @@ class CellWalk {
         : field_(field), origin_(origin), direction_(direction), cell_(cell < 0 ? nearby_cell(field, origin) : cell) {}
 
     /// Goes on from `distance` to where a grain other than `current` begins, and returns it with `distance` set there. Returns 0
-    /// with `distance` = `end` if there is none.
+    /// with `distance` = `end` if there is none; may be asked again with an end farther away.
     OPAL_HD int next_grain(int current, float& distance, float end) {
         while (true) {
             if (!exit_known_) find_exit(distance);

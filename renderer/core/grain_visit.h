@@ -14,7 +14,7 @@ namespace opal {
 /// Turning rates of every family that matters along one direction.
 template <int N>
 struct GrainRates {
-    float rate_per_mm[max_tested_pairs][N];
+    float rate_per_mm[N][max_tested_pairs];  ///< per lane; element i is that of family pair[i]
     int pair[max_tested_pairs];
     int count = 0;
     float total_per_mm[N];
@@ -89,6 +89,74 @@ OPAL_HD inline void begin_visit(const OpalView& opal, GrainVisit<N>& visit, Path
     visit.link = -1;
 }
 
+/// Families as light of one direction and one stay meets them.
+struct MetFamilies {
+    float cosine[max_tested_pairs];     ///< |w . g|
+    float polarized[max_tested_pairs];  ///< 1: p, in the plane of incidence; 0: s
+};
+
+/// Lists the families within an octave of their Bragg wavelength at one lane or another in `rates.pair`, in ascending order: no
+/// other turns light.
+template <int N>
+OPAL_HD inline void list_near_families(const OpalView& opal, const LaneOptics<N>& optics, const GrainVisit<N>& visit,
+                                       Vec3 lattice_direction, MetFamilies& met, GrainRates<N>& rates) {
+    // Twice the cosine over g, times n / lambda, is the ratio of wavelengths, which has to lie between 1/2 and 2.
+    float smallest = optics.n_eff[0] / optics.wavelength_nm[0], largest = smallest;
+    for (int i = 1; i < N; ++i) {
+        const float n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
+        smallest = min_of(smallest, n_over_lambda);
+        largest = max_of(largest, n_over_lambda);
+    }
+    // So that rounding decides nothing here.
+    smallest *= 0.99999f;
+    largest *= 1.00001f;
+    const PlaneFamilies& families = opal.families;
+    int count = 0;
+    for (int first = 0; first < opal.num_pairs; first += beam_block_size) {
+        const uint32_t bits = uint32_t(visit.p_polarized >> first);
+        int near[beam_block_size];
+        OPAL_SIMD
+        for (int j = 0; j < beam_block_size; ++j) {
+            const int k = first + j;
+            const float cosine = fabsf(lattice_direction.x * families.normal_x[k] + lattice_direction.y * families.normal_y[k] +
+                                       lattice_direction.z * families.normal_z[k]);
+            met.cosine[k] = cosine;
+            met.polarized[k] = float((bits >> j) & 1u);
+            near[j] = (4.0f * cosine * largest >= families.g_per_nm[k]) & (cosine * smallest <= families.g_per_nm[k]) &
+                      (cosine >= 1.0e-4f) & (families.form[k] > 0.0f);
+        }
+        for (int j = 0; j < beam_block_size; ++j) {
+            rates.pair[count] = first + j;
+            count += near[j];
+        }
+    }
+    rates.count = count;
+}
+
+/// A block of the listed families, from the one at place `first` on; places beyond the last are of no strength.
+template <int N>
+OPAL_HD inline BeamBlock beams_at(const OpalView& opal, const GrainVisit<N>& visit, const MetFamilies& met,
+                                  const GrainRates<N>& rates, int first) {
+    const PlaneFamilies& families = opal.families;
+    BeamBlock beams;
+    for (int j = 0; j < beam_block_size; ++j) {
+        const int k = rates.pair[min_of(first + j, rates.count - 1)];
+        beams.cosine[j] = met.cosine[k];
+        beams.g_per_nm[j] = families.g_per_nm[k];
+        beams.form[j] = first + j < rates.count ? families.form[k] : 0.0f;
+        beams.polarized[j] = met.polarized[k];
+        beams.block_nm[j] = visit.block_nm;
+        beams.share[j] = 1.0f;
+    }
+    if (opal.fault == 0.0f) return beams;
+    for (int j = 0; j < beam_block_size; ++j) {
+        const int k = rates.pair[min_of(first + j, rates.count - 1)];
+        beams.block_nm[j] = min_of(visit.block_nm, visit.block_factor * families.coherence_nm[k]);
+        beams.share[j] = families.twin[k] == 0.0f ? 1.0f : 0.5f * (1.0f + families.twin[k] * visit.own_excess);
+    }
+    return beams;
+}
+
 /// Rates along `direction` (world; `lattice_direction` in the lattice's frame).
 template <int N>
 OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& optics, const GrainVisit<N>& visit, Vec3 direction,
@@ -97,36 +165,27 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
     rates.direction = direction;
     for (int i = 0; i < N; ++i) rates.total_per_mm[i] = 0.0f;
     if (opal.diffraction == Diffraction::ewald_fresnel) return;  // turns at boundaries alone
-    const PlaneFamilies& families = opal.families;
-    for (int first = 0; first < opal.num_pairs; first += beam_block_size) {
-        BeamBlock beams;
-        OPAL_SIMD
-        for (int j = 0; j < beam_block_size; ++j) {
-            const int k = first + j;
-            beams.cosine[j] = fabsf(lattice_direction.x * families.normal_x[k] + lattice_direction.y * families.normal_y[k] +
-                                    lattice_direction.z * families.normal_z[k]);
-            beams.g_per_nm[j] = families.g_per_nm[k];
-            beams.form[j] = beams.cosine[j] < 1.0e-4f ? 0.0f : families.form[k];
-            beams.block_nm[j] = min_of(visit.block_nm, visit.block_factor * families.coherence_nm[k]);
-            beams.polarized[j] = (visit.p_polarized >> k) & 1u ? 1.0f : 0.0f;
-            beams.share[j] = families.twin[k] == 0.0f ? 1.0f : 0.5f * (1.0f + families.twin[k] * visit.own_excess);
-        }
+    MetFamilies met;
+    list_near_families(opal, optics, visit, lattice_direction, met, rates);
+    if (rates.count == 0) return;
+    float totals[N][beam_block_size] = {};
+    for (int first = 0; first < rates.count; first += beam_block_size) {
+        const BeamBlock beams = beams_at(opal, visit, met, rates, first);
         float block_rates[N][beam_block_size];
         if (opal.diffraction == Diffraction::laue)
             laue_rates(beams, optics, visit.max_rate_per_mm, block_rates);
         else
             reflection_rates(beams, optics, visit.max_rate_per_mm, block_rates);
-        for (int j = 0; j < beam_block_size; ++j) {
-            float sum = 0.0f;
-            for (int i = 0; i < N; ++i) sum += block_rates[i][j];
-            if (!(sum > 0.0f)) continue;
-            for (int i = 0; i < N; ++i) {
-                rates.rate_per_mm[rates.count][i] = block_rates[i][j];
-                rates.total_per_mm[i] += block_rates[i][j];
+        for (int i = 0; i < N; ++i) {
+            OPAL_SIMD
+            for (int j = 0; j < beam_block_size; ++j) {
+                rates.rate_per_mm[i][first + j] = block_rates[i][j];
+                totals[i][j] += block_rates[i][j];
             }
-            rates.pair[rates.count++] = first + j;
         }
     }
+    for (int i = 0; i < N; ++i)
+        for (int j = 0; j < beam_block_size; ++j) rates.total_per_mm[i] += totals[i][j];
 }
 
 /// Which family turns the hero, given that one does and that it is not family `other` (-1: any): by its rate; `rest` is drawn
@@ -135,7 +194,7 @@ template <int N>
 OPAL_HD inline int choose_family(const GrainRates<N>& rates, float rest, int other = -1) {
     int chosen = -1;
     for (int i = 0; i < rates.count; ++i) {
-        const float rate = rates.rate_per_mm[i][0];
+        const float rate = rates.rate_per_mm[0][i];
         if (i == other || !(rate > 0.0f)) continue;
         chosen = i;  // rounding can carry `rest` past the last family; never onto one that does not turn
         if (rest < rate) break;

@@ -42,16 +42,18 @@ class GrainWalk {
     }
 
     /// Goes on from `distance` to where a grain other than `current` begins, and returns it with `distance` set there. Unlabelled
-    /// voxels (0: those cut by the surface) belong to the grain before them. Returns 0 with `distance` = `end` if there is none.
+    /// voxels (0: those cut by the surface) belong to the grain before them. Returns 0 with `distance` = `end` if there is none;
+    /// may be asked again with an end farther away.
     OPAL_HD int next_grain(int current, float& distance, float end) {
         while (true) {
-            const int grain = accessor_.getValue(voxel_);
-            if (grain != 0 && grain != current) return grain;
-            leave_box(int(accessor_.getDim(voxel_, 0)), distance);
-            if (distance >= end) {
+            if (entered_ > 0.0f && entered_ >= end) {
                 distance = end;
                 return 0;
             }
+            distance = max_of(distance, entered_);
+            const int grain = accessor_.getValue(voxel_);
+            if (grain != 0 && grain != current) return grain;
+            leave_box(int(accessor_.getDim(voxel_, 0)), entered_);
         }
     }
 
@@ -84,6 +86,7 @@ class GrainWalk {
     nanovdb::DefaultReadAccessor<int32_t> accessor_;
     Vec3 origin_, direction_, inverse_;
     nanovdb::Coord voxel_;
+    float entered_ = 0.0f;  ///< where the ray comes into that voxel
 };
 
 }  // namespace opal

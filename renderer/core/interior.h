@@ -21,6 +21,18 @@ struct PathCounters {
     uint64_t truncated_paths = 0;
     uint64_t not_a_number = 0;
     uint64_t majorant_violations = 0;  ///< tentative collisions where a field exceeds its bounds
+
+    OPAL_HD void add(const PathCounters& other) {
+        diffractions += other.diffractions;
+        turns_back += other.turns_back;
+        scatterings += other.scatterings;
+        grain_crossings += other.grain_crossings;
+        multi_beam_stays += other.multi_beam_stays;
+        lost_paths += other.lost_paths;
+        truncated_paths += other.truncated_paths;
+        not_a_number += other.not_a_number;
+        majorant_violations += other.majorant_violations;
+    }
 };
 
 enum class InteriorEventKind { surface, diffraction, scattering };
@@ -37,17 +49,18 @@ template <int N>
 OPAL_HD inline bool is_multi_beam(const OpalView& opal, const GrainVisit<N>& visit) {
     const float half_per_mm = visit.max_rate_per_mm / (opal.max_odds + 1.0f);  // odds 1 over the grain's size, saturated
     int strong = 0;
-    for (int i = 0; i < visit.present().count; ++i) strong += visit.present().rate_per_mm[i][0] > half_per_mm ? 1 : 0;
+    for (int i = 0; i < visit.present().count; ++i) strong += visit.present().rate_per_mm[0][i] > half_per_mm ? 1 : 0;
     return strong > 1;
 }
 
 /// Makes sure that the rates along the present flight are known; begins a stay where there is none.
 template <int N>
-OPAL_HD inline void prepare_visit(const OpalView& opal, const LaneOptics<N>& optics, Vec3 direction, Vec3 object_direction,
-                                  GrainVisit<N>& visit, PathRandom& random, PathCounters& counters) {
+OPAL_HD inline void prepare_visit(const OpalView& opal, const LaneOptics<N>& optics, Vec3 direction, GrainVisit<N>& visit,
+                                  PathRandom& random, PathCounters& counters) {
     const bool begins = visit.fresh;
     if (begins) begin_visit(opal, visit, random);
     if (visit.present_known) return;
+    const Vec3 object_direction = opal.world_from_object.local_from_world_direction(direction);
     const Vec3 lattice_direction = visit.object_from_lattice.conjugate().rotate(object_direction);
     evaluate_rates(opal, optics, visit, direction, lattice_direction, visit.rates[visit.current]);
     visit.present_known = true;
@@ -59,8 +72,14 @@ OPAL_HD inline void prepare_visit(const OpalView& opal, const LaneOptics<N>& opt
 /// Every lane's probability of flying `length_mm` without a turn, over the hero's.
 template <int N>
 OPAL_HD inline void pass_planes(const GrainRates<N>& rates, float length_mm, LaneWeights<N>& weights) {
-    for (int i = 1; i < weights.count; ++i)
-        weights.ratio.v[i] *= expf((rates.total_per_mm[0] - rates.total_per_mm[i]) * length_mm);
+    OPAL_SIMD
+    for (int i = 1; i < N; ++i) weights.ratio.v[i] *= exponential((rates.total_per_mm[0] - rates.total_per_mm[i]) * length_mm);
+}
+
+/// Every lane's probability of being turned by a family (index into the rates), over the hero's.
+template <int N>
+OPAL_HD inline void take_turn(const GrainRates<N>& rates, int family, LaneWeights<N>& weights) {
+    for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= rates.rate_per_mm[i][family] / rates.rate_per_mm[0][family];
 }
 
 /// The Ewald rule at the boundary where a stay begins. Returns whether the hero is turned, with its new direction (world).
@@ -86,11 +105,11 @@ OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& 
     return true;
 }
 
-/// No surface lies nearer to a place inside the opal (world mm): its depth by the level set, less a voxel for what the triangles
-/// may deviate from it.
-OPAL_HD inline float clearance_mm(const OpalView& opal, Vec3 position) {
+/// No surface lies nearer (world mm) to a place inside the opal (object mm): its depth by the level set, less a voxel for what
+/// the triangles may deviate from it.
+OPAL_HD inline float clearance_mm(const OpalView& opal, Vec3 place) {
     if (!opal.shape.grid) return 0.0f;
-    const float depth_mm = -field_value(opal.shape, opal.world_from_object.local_from_world_point(position));
+    const float depth_mm = -field_value(opal.shape, place);
     return max_of(0.0f, depth_mm - 1.0f / opal.shape.voxels_per_mm) * opal.world_from_object.scale;
 }
 
@@ -109,49 +128,79 @@ OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wave
     visit.renew();
 }
 
-/// Balls smaller than this are not worth it.
-inline constexpr float exchange_min_ball_mm = 1.0e-3f;
+/// Fewer flights than these between a place and the surface are not worth an exchange; with more than these one need not know
+/// better how far the surface is.
+inline constexpr float exchange_min_flights = 0.5f, exchange_many_flights = 8.0f;
 
-/// Lets the light go back and forth between two beams within a ball of radius `ball_mm` about the ray's origin; no surface lies
-/// within `clear_mm`.
+/// Lets the light go back and forth between two beams from the ray's origin. Returns whether that ended by an event, to which it
+/// has brought `event`; else `ray` is moved to the beginning of `next`, the flight that may leave the grain or the body.
+/// `clear_known`: `visit.clear_mm` is as good as it gets where the ray then begins.
 template <int N>
-OPAL_HD inline InteriorEvent exchange_in_ball(const OpalView& opal, const PathWavelengths<N>& wavelengths,
-                                              const LaneMedium<N>& medium, const Ray& ray, float ball_mm, float clear_mm,
-                                              MediumFlight<N>& flight, GrainVisit<N>& visit, LaneWeights<N>& weights,
-                                              PathRandom& random, PathCounters& counters) {
-    const BeamExchange<N> exchange = exchange_beams(visit, ball_mm, flight.scatter_distance_mm(), weights, random);
-    flight.advance(exchange.path_mm, weights);
-    counters.diffractions += exchange.turns;
-    counters.turns_back += exchange.turns - (exchange.turned_by >= 0 ? 1 : 0);
-    InteriorEvent event{InteriorEventKind::diffraction, ray.origin + exchange.offset, visit.present().direction, true};
-    visit.clear_mm = max_of(0.0f, clear_mm - length(exchange.offset));
+OPAL_HD inline bool exchange_in_grain(const OpalView& opal, const PathWavelengths<N>& wavelengths, const LaneMedium<N>& medium,
+                                      Ray& ray, MediumFlight<N>& flight, GrainVisit<N>& visit, LaneWeights<N>& weights,
+                                      PathRandom& random, PathCounters& counters, PlannedTurn& next, InteriorEvent& event,
+                                      bool& clear_known) {
+    const RigidTransform& world_from_object = opal.world_from_object;
+    const float object_per_world = 1.0f / world_from_object.scale;
+    const float flights_per_mm = visit.present().total_per_mm[0];
+    const Vec3 place = world_from_object.local_from_world_point(ray.origin);
+    if (visit.clear_mm * flights_per_mm < exchange_many_flights) {
+        visit.clear_mm = max_of(visit.clear_mm, clearance_mm(opal, place));
+        clear_known = true;
+    }
+    if (visit.clear_mm * flights_per_mm < exchange_min_flights) return false;
+    ExchangeRegion region(world_from_object.local_from_world_direction(visit.present().direction),
+                          world_from_object.local_from_world_direction(visit.rates[1 - visit.current].direction));
+    keep_in_grain(opal.grains, place, visit.grain, visit.cell, opal.grain_size_mm[visit.grain - 1], region);
+    region.keep_in_ball(visit.clear_mm * object_per_world);
+    const BeamExchange exchange = exchange_beams(visit, region, object_per_world, flight.scatter_distance_mm(), random);
+    next = exchange.next;
+    const float path_mm = exchange.path_mm();
+    const uint64_t turns = uint64_t(exchange.turns[0] + exchange.turns[1]);
+    if (turns == 0 && path_mm == 0.0f) return false;
+    clear_known = false;
+    weigh_exchange(visit, exchange, weights);
+    counters.diffractions += turns;
+    counters.turns_back += turns;
+    const Vec3 offset = exchange.flown_mm[0] * visit.rates[0].direction + exchange.flown_mm[1] * visit.rates[1].direction;
+    visit.clear_mm = max_of(0.0f, visit.clear_mm - length(offset));
+    ray = {ray.origin + offset, visit.present().direction};
+    flight.begin_again(path_mm, weights);
+    if (!exchange.scattered && exchange.turned_by < 0) return false;
+    event = {InteriorEventKind::diffraction, ray.origin, ray.direction, false};
     if (exchange.scattered) {
         scatter(opal, wavelengths, medium, visit, weights, random, counters, event);
-    } else if (exchange.turned_by >= 0) {
-        const GrainRates<N>& rates = visit.present();
-        const float* rate_per_mm = rates.rate_per_mm[exchange.turned_by];
-        for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= rate_per_mm[i] / rate_per_mm[0];
-        event.direction = turn_visit(opal, visit, rates.pair[exchange.turned_by]);
-        event.turned_back = false;
+    } else {
+        ++counters.diffractions;
+        take_turn(visit.present(), exchange.turned_by, weights);
+        event.direction = turn_visit(opal, visit, visit.present().pair[exchange.turned_by]);
     }
-    return event;
+    return true;
 }
 
-/// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface. `surface.distance_mm()` finds
-/// that with a ray cast; it is asked only where the ray might get so far: inside a band the next turn is often some micrometres
-/// away.
+/// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface; `ray` is then the last of the
+/// straight flights on the way. `surface.distance_mm()` finds the surface ahead of it with a ray cast; it is asked only where the
+/// ray might get so far: inside a band the next turn is often some micrometres away.
 template <int N, class SurfaceProbe>
 OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWavelengths<N>& wavelengths,
-                                            const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray ray,
+                                            const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray& ray,
                                             SurfaceProbe& surface, GrainVisit<N>& visit, LaneWeights<N>& weights,
                                             PathRandom& random, PathCounters& counters) {
     MediumFlight<N> flight(opal, medium, ray, weights, random, counters.majorant_violations);
     InteriorEvent event{InteriorEventKind::surface, ray.origin, ray.direction, false};
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
         const float scale = opal.world_from_object.scale;
+        PlannedTurn planned;
+        bool clear_known = false;
+        if (visit.grain != 0 && !visit.fresh && visit.link >= 0 && flight.closed_form()) {
+            prepare_visit(opal, optics, ray.direction, visit, random, counters);
+            if (exchanges_beams(visit) && exchange_in_grain(opal, wavelengths, medium, ray, flight, visit, weights, random,
+                                                            counters, planned, event, clear_known))
+                return event;
+        }
         const Vec3 direction = opal.world_from_object.local_from_world_direction(ray.direction);
-        const Vec3 walk_origin = opal.world_from_object.local_from_world_point(ray.origin);
-        GrainPath walk(opal.grains, walk_origin, direction, visit.cell);
+        const Vec3 origin = opal.world_from_object.local_from_world_point(ray.origin);
+        GrainPath walk(opal.grains, origin, direction, visit.cell);
         float reached = 0.0f;  // object mm, like everything on the walk
         float entered_mm = 0.0f;
         if (visit.grain == 0) {
@@ -159,33 +208,35 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             visit.cell = walk.cell();
         }
         float clear_mm = visit.clear_mm;  // no surface within this distance of the origin
-        bool clear_known = false;
         while (visit.grain != 0) {
-            prepare_visit(opal, optics, ray.direction, direction, visit, random, counters);
+            prepare_visit(opal, optics, ray.direction, visit, random, counters);
             Vec3 turned;
             if (opal.diffraction == Diffraction::ewald_fresnel && visit.at_boundary &&
                 turn_at_boundary(opal, optics, ray.direction, direction, visit, weights, random, turned)) {
                 ++counters.diffractions;
                 return {InteriorEventKind::diffraction, ray.origin + entered_mm * ray.direction, turned, false};
             }
-            if (entered_mm == 0.0f && flight.closed_form() && exchanges_beams(visit)) {
-                clear_mm = max_of(clear_mm, clearance_mm(opal, ray.origin));
-                clear_known = true;
-                const float ball_mm =
-                    min_of(clear_mm, scale * grain_clearance_mm(opal.grains, walk_origin, visit.grain, visit.cell));
-                if (ball_mm > exchange_min_ball_mm)
-                    return exchange_in_ball(opal, wavelengths, medium, ray, ball_mm, clear_mm, flight, visit, weights, random,
-                                            counters);
-            }
             const GrainRates<N>& rates = visit.present();
             const float total_per_mm = rates.total_per_mm[0];
-            const float turn_mm = total_per_mm > 0.0f ? entered_mm - logf(1.0f - random.next()) / total_per_mm : 3.0e38f;
-            if (turn_mm > clear_mm && !clear_known) {
-                clear_mm = clearance_mm(opal, ray.origin);
+            float turn_mm = 3.0e38f;
+            if (planned.family >= 0)
+                turn_mm = planned.length_mm;
+            else if (total_per_mm > 0.0f)
+                turn_mm = entered_mm + free_depth(random.next()) / total_per_mm;
+            float surface_mm = 3.0e38f;
+            // As far as surely no surface is; then as far as there may be one.
+            int next = 0;
+            if (clear_mm > entered_mm) next = walk.next_grain(visit.grain, reached, min_of(clear_mm, turn_mm) / scale);
+            if (next == 0 && turn_mm > clear_mm && !clear_known) {
+                clear_mm = max_of(clear_mm, clearance_mm(opal, origin));
                 clear_known = true;
+                if (clear_mm > max_of(entered_mm, reached * scale))
+                    next = walk.next_grain(visit.grain, reached, min_of(clear_mm, turn_mm) / scale);
             }
-            const float surface_mm = turn_mm > clear_mm ? surface.distance_mm() : 3.0e38f;
-            const int next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
+            if (next == 0 && turn_mm > clear_mm) {
+                surface_mm = surface.distance_mm();
+                next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
+            }
             visit.cell = walk.cell();
             const float leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);
             const float end_mm = min_of(min_of(turn_mm, leaves_mm), surface_mm);
@@ -193,9 +244,8 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             pass_planes(rates, passed_mm - entered_mm, weights);
             if (flight.scattered()) break;
             if (turn_mm <= end_mm) {
-                const int family = choose_family(rates, random.next() * total_per_mm);
-                for (int i = 1; i < weights.count; ++i)
-                    weights.ratio.v[i] *= rates.rate_per_mm[family][i] / rates.rate_per_mm[family][0];
+                const int family = planned.family >= 0 ? planned.family : choose_family(rates, random.next() * total_per_mm);
+                take_turn(rates, family, weights);
                 const int k = rates.pair[family];
                 const bool turned_back = k == visit.link;
                 ++counters.diffractions;
@@ -206,10 +256,12 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             }
             if (next == 0 || end_mm >= surface_mm) break;
             visit.enter(next);
+            planned.family = -1;
             entered_mm = end_mm;
         }
     }
     event.position = ray.origin + flight.advance(surface.distance_mm(), weights) * ray.direction;
+    event.direction = ray.direction;
     if (flight.scattered()) scatter(opal, wavelengths, flight.local(), visit, weights, random, counters, event);
     return event;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "renderer/core/exponential.h"
 #include "renderer/core/medium.h"
 #include "renderer/core/scene_view.h"
 
@@ -40,7 +41,7 @@ class MediumFlight {
             return;
         }
         const float sigma_s = medium.sigma_s(0);
-        scatter_mm_ = sigma_s > 0.0f ? -logf(1.0f - random.next()) / sigma_s : 3.0e38f;
+        scatter_mm_ = sigma_s > 0.0f ? free_depth(random.next()) / sigma_s : 3.0e38f;
     }
 
     /// Goes on to `distance_mm` from the flight's start, or to where the hero scatters before that. Returns the distance reached.
@@ -48,10 +49,15 @@ class MediumFlight {
         if (varies()) return advance_in_fields(distance_mm, weights);
         const float end_mm = min_of(distance_mm, scatter_mm_);
         const float step_mm = end_mm - reached_mm_;
-        for (int i = 0; i < weights.count; ++i) weights.throughput.v[i] *= expf(-medium_.sigma_a.v[i] * step_mm);
-        for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= expf((medium_.sigma_s(0) - medium_.sigma_s(i)) * step_mm);
+        pass(step_mm, weights);
         reached_mm_ = end_mm;
         return end_mm;
+    }
+
+    /// In closed form: begins anew after light has gone `path_mm` on other ways, not so far that it scatters.
+    OPAL_HD void begin_again(float path_mm, LaneWeights<N>& weights) {
+        pass(path_mm, weights);
+        scatter_mm_ -= path_mm;
     }
 
     /// Whether nothing varies: then the flight need not be straight.
@@ -66,12 +72,19 @@ class MediumFlight {
     OPAL_HD const LaneMedium<N>& local() const { return varies() ? local_ : medium_; }
 
   private:
+    OPAL_HD void pass(float length_mm, LaneWeights<N>& weights) const {
+        OPAL_SIMD
+        for (int i = 0; i < N; ++i) weights.throughput.v[i] *= exponential(-medium_.sigma_a.v[i] * length_mm);
+        OPAL_SIMD
+        for (int i = 1; i < N; ++i) weights.ratio.v[i] *= exponential((medium_.sigma_s(0) - medium_.sigma_s(i)) * length_mm);
+    }
+
     /// Throughput below which a null collision halves the chance to go on: a flight through a deep absorber would otherwise
     /// compute what is too faint to matter.
     static constexpr float faint = 0x1p-10f;
 
     OPAL_HD bool varies() const { return view_.majorants.cells != nullptr; }
-    OPAL_HD float draw_depth() { return -logf(1.0f - random_.next()); }
+    OPAL_HD float draw_depth() { return free_depth(random_.next()); }
 
     OPAL_HD void begin_in_fields(const RigidTransform& world_from_object, const Ray& ray, const LaneWeights<N>& weights) {
         origin_mm_ = world_from_object.local_from_world_point(ray.origin);

@@ -59,7 +59,7 @@ class PathTracer {
     }
 
   private:
-    OPAL_HD void follow(Ray ray, int bounce) {
+    OPAL_HD_LARGE void follow(Ray ray, int bounce) {
         while (true) {
             SurfaceProbe<Intersector> ahead(intersector_, scene_.lights, ray, bounce == 0);
             const int body = bodies_.current();

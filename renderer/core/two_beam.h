@@ -108,26 +108,34 @@ OPAL_HD inline void reflection_rates(const BeamBlock& beams, const LaneOptics<N>
         detuning[j] = pi_f * beams.g_per_nm[j] * beams.block_nm[j];
         blocks_per_mm[j] = beams.share[j] * cosine * 1.0e6f / beams.block_nm[j];
     }
+    float kappa_t[N][beam_block_size], delta_t[N][beam_block_size], lowest_x2[beam_block_size];
+    for (int j = 0; j < beam_block_size; ++j) lowest_x2[j] = 3.0e38f;
     for (int i = 0; i < N; ++i) {
         const float n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
         const float strength = optics.contrast[i] / (optics.n_eff[i] * optics.wavelength_nm[i]);
-        float kappa_t[beam_block_size], delta_t[beam_block_size], x2[beam_block_size];
-        float smallest = 3.0e38f;
         OPAL_SIMD
         for (int j = 0; j < beam_block_size; ++j) {
             const float ratio = bragg_over_n_nm[j] * n_over_lambda;
             const float near = ratio >= 0.5f && ratio <= 2.0f ? coupling[j] : 0.0f;
-            kappa_t[j] = near * strength;
-            delta_t[j] = detuning[j] * (ratio - 1.0f);
-            const float kappa2 = kappa_t[j] * kappa_t[j];
-            x2[j] = delta_t[j] * delta_t[j] - kappa2;
-            const float outside = x2[j] < band_edge_x2 ? band_edge_x2 : x2[j];
+            kappa_t[i][j] = near * strength;
+            delta_t[i][j] = detuning[j] * (ratio - 1.0f);
+            const float kappa2 = kappa_t[i][j] * kappa_t[i][j];
+            const float x2 = delta_t[i][j] * delta_t[i][j] - kappa2;
+            lowest_x2[j] = x2 < lowest_x2[j] ? x2 : lowest_x2[j];
+            const float outside = x2 < band_edge_x2 ? band_edge_x2 : x2;
             rate_per_mm[i][j] = blocks_per_mm[j] * kappa2 * sine_squared(sqrtf(outside)) / outside;
         }
-        for (int j = 0; j < beam_block_size; ++j) smallest = min_of(smallest, x2[j]);
-        if (smallest < band_edge_x2)
+    }
+    // Whether one is inside a band is asked of all at once.
+    int in_band = 0;
+    OPAL_SIMD_ANY(in_band)
+    for (int j = 0; j < beam_block_size; ++j) in_band |= lowest_x2[j] < band_edge_x2;
+    if (in_band)
+        for (int i = 0; i < N; ++i)
             for (int j = 0; j < beam_block_size; ++j)
-                if (x2[j] < band_edge_x2) rate_per_mm[i][j] = blocks_per_mm[j] * block_reflection_odds(kappa_t[j], delta_t[j]);
+                if (delta_t[i][j] * delta_t[i][j] - kappa_t[i][j] * kappa_t[i][j] < band_edge_x2)
+                    rate_per_mm[i][j] = blocks_per_mm[j] * block_reflection_odds(kappa_t[i][j], delta_t[i][j]);
+    for (int i = 0; i < N; ++i) {
         OPAL_SIMD
         for (int j = 0; j < beam_block_size; ++j) rate_per_mm[i][j] *= max_rate_per_mm / (max_rate_per_mm + rate_per_mm[i][j]);
     }

@@ -13,18 +13,6 @@
 namespace opal {
 namespace {
 
-void add_counters(PathCounters& sum, const PathCounters& part) {
-    sum.diffractions += part.diffractions;
-    sum.turns_back += part.turns_back;
-    sum.scatterings += part.scatterings;
-    sum.grain_crossings += part.grain_crossings;
-    sum.multi_beam_stays += part.multi_beam_stays;
-    sum.lost_paths += part.lost_paths;
-    sum.truncated_paths += part.truncated_paths;
-    sum.not_a_number += part.not_a_number;
-    sum.majorant_violations += part.majorant_violations;
-}
-
 /// Adds the next sample to each of a block's pixels. Sample by sample over the block: its totals are then added up in the same
 /// order however samples are cut into passes.
 template <int N>
@@ -71,8 +59,9 @@ std::uint32_t pass_size(std::uint32_t done, std::uint32_t new_samples, double el
 class RenderRun {
   public:
     RenderRun(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-              const std::function<void(const RenderProgress&)>& progress)
+              const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device)
         : guides_(scene, intersector),
+          device_(make_device ? make_device(guides_.scene()) : nullptr),
           intersector_(intersector),
           limits_(limits),
           film_(film),
@@ -93,7 +82,11 @@ class RenderRun {
             if (done >= std::uint32_t(limits_.samples)) break;
             whole_ = done > film_.first_sample();
             if (stops()) break;
-            pass(next_target(done, done - start));
+            const std::uint32_t target = next_target(done, done - start);
+            if (device_)
+                device_pass(target);
+            else
+                pass(target);
             begin_noise();
         }
         outcome.interrupted = interrupt_requested();
@@ -101,7 +94,7 @@ class RenderRun {
         // In the order of blocks: floating-point sums must not depend on which thread ended first.
         for (int b = 0; b < film_.num_blocks(); ++b) {
             const FilmBlock& block = film_.block(b);
-            add_counters(outcome.counters, block.counters);
+            outcome.counters.add(block.counters);
             outcome.totals.add(block.totals);
             lowest = std::min(lowest, block.end_sample - film_.first_sample());
         }
@@ -140,11 +133,43 @@ class RenderRun {
         tbb::parallel_for(tbb::blocked_range<int>(0, film_.num_blocks(), 1), [&](const tbb::blocked_range<int>& range) {
             for (int b = range.begin(); b != range.end() && !stops(); ++b) {
                 advance(b, target);
-                const double by_time = limits_.time_s > 0.0 ? watch_.seconds() / limits_.time_s : 0.0;
-                progress_({std::min(1.0, std::max(double(work_done_) / double(total_work_), by_time)),
-                           double(new_paths_) / std::max(1.0e-3, watch_.seconds())});
+                report_progress();
             }
         });
+    }
+
+    void report_progress() {
+        const double by_time = limits_.time_s > 0.0 ? watch_.seconds() / limits_.time_s : 0.0;
+        progress_({std::min(1.0, std::max(double(work_done_) / double(total_work_), by_time)),
+                   double(new_paths_) / std::max(1.0e-3, watch_.seconds())});
+    }
+
+    /// The same on a device: launch after launch of the blocks that are farthest behind, each up to where noise is looked at
+    /// next.
+    void device_pass(std::uint32_t target) {
+        while (!stops()) {
+            std::uint32_t behind = target;
+            for (int b = 0; b < film_.num_blocks(); ++b)
+                if (!film_.block(b).settled) behind = std::min(behind, film_.block(b).end_sample);
+            if (behind == target) return;
+            std::vector<int> blocks;
+            for (int b = 0; b < film_.num_blocks(); ++b)
+                if (!film_.block(b).settled && film_.block(b).end_sample == behind) blocks.push_back(b);
+            const std::uint32_t first = film_.first_sample(), look = first + next_noise_look(behind - first);
+            device_->advance(film_, blocks, std::min(target, look) - behind);
+            for (const int b : blocks) finish_launch(b, behind, look);
+            report_progress();
+        }
+    }
+
+    void finish_launch(int index, std::uint32_t samples_before, std::uint32_t look) {
+        FilmBlock& block = film_.block(index);
+        const std::scoped_lock lock(block.lock);
+        const PixelWindow window = film_.block_window(index);
+        new_paths_ += std::int64_t(block.end_sample - samples_before) * window.width() * window.height();
+        const std::int64_t left = work_left(block);
+        if (block.end_sample == look && film_.noise_floor() >= 0.0) look_at_noise(film_, index, limits_.noise);
+        work_done_ += std::int64_t(block.end_sample - samples_before) + left - work_left(block);
     }
 
     /// Once all blocks have as many samples as noise takes: its floor, and the first look at it. A render that was cut off in
@@ -179,6 +204,7 @@ class RenderRun {
     }
 
     const LightGuides guides_;
+    const std::unique_ptr<PathDevice> device_;
     const EmbreeScene& intersector_;
     const RenderLimits limits_;
     Film& film_;
@@ -195,8 +221,8 @@ class RenderRun {
 }  // namespace
 
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(const RenderProgress&)>& progress) {
-    return RenderRun(scene, intersector, limits, film, progress).run();
+                         const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device) {
+    return RenderRun(scene, intersector, limits, film, progress, make_device).run();
 }
 
 }  // namespace opal

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "renderer/cpu/embree_scene.h"
 #include "renderer/host/film.h"
 #include "renderer/host/host_scene.h"
+#include "renderer/host/path_device.h"
 
 namespace opal {
 
@@ -32,10 +34,14 @@ struct RenderProgress {
     double paths_per_second = 0.0;
 };
 
-/// Renders a scene on all CPU cores, going on from what the film holds: TBB over the film's blocks, pass after pass, so that
-/// whatever ends it leaves a picture; blocks then have sample counts of their own. The film's content depends on the scene and
-/// the limits alone, not on threads, passes or interruptions. `progress` is called from all threads.
+/// Makes the device that draws the samples of a scene; null: the processor's cores do.
+using MakeDevice = std::function<std::unique_ptr<PathDevice>(const SceneView&)>;
+
+/// Renders a scene on all CPU cores, or on the device that `make_device` gives, going on from what the film holds: TBB over the
+/// film's blocks, pass after pass, so that whatever ends it leaves a picture; blocks then have sample counts of their own. The
+/// film's content depends on the scene and the limits alone, not on threads, passes or interruptions. `progress` is called from
+/// all threads.
 RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(const RenderProgress&)>& progress);
+                         const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device = {});
 
 }  // namespace opal

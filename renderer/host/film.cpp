@@ -7,14 +7,22 @@
 #include <cmath>
 
 namespace opal {
+namespace {
 
-int spectral_bin(double wavelength_nm) {
-    return std::clamp(int((wavelength_nm - 355.0) / 10.0), 0, num_bins - 1);
+FilmColors colors_for(Xyz white) {
+    const Matrix3 adaptation = bradford_adaptation(white, srgb_white);
+    FilmColors colors;
+    for (int column = 0; column < 3; ++column) {
+        const Rgb3d rgb =
+            linear_srgb_from_xyz(adaptation * Xyz{column == 0 ? 1.0 : 0.0, column == 1 ? 1.0 : 0.0, column == 2 ? 1.0 : 0.0});
+        colors.rgb_from_xyz[column] = rgb.r;
+        colors.rgb_from_xyz[3 + column] = rgb.g;
+        colors.rgb_from_xyz[6 + column] = rgb.b;
+    }
+    return colors;
 }
 
-double bin_width_nm(int bin) {
-    return bin == 0 || bin == num_bins - 1 ? 5.0 : 10.0;
-}
+}  // namespace
 
 double bin_centre_nm(int bin) {
     return 360.0 + 10.0 * bin;
@@ -31,8 +39,26 @@ void SpectrumTotals::add(const SpectrumTotals& other) {
     samples += other.samples;
 }
 
+void SpectrumTotals::add(const FilmColors& colors, const SpectrumTables& tables, const FilmSample& sample) {
+    for (int i = 0; i < sample.count; ++i) {
+        const int bin = spectral_bin(double(sample.wavelength_nm[i]));
+        bool first = true;
+        for (int j = 0; j < i; ++j) first = first && spectral_bin(double(sample.wavelength_nm[j])) != bin;
+        if (!first) continue;
+        BinTotals sums = of_bin(bin);
+        sums.add(sample, bin);
+        set(bin, sums);
+    }
+    double lost[3];
+    opal::truncated_rgb(colors, tables, sample, lost);
+    for (int c = 0; c < 3; ++c) truncated_rgb[c] += lost[c];
+    ++samples;
+}
+
 std::array<double, 3> opponent(const double* rgb) {
-    return {0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], rgb[0] - rgb[1], rgb[2] - 0.5 * (rgb[0] + rgb[1])};
+    std::array<double, 3> opponents;
+    opponent_of(rgb, opponents.data());
+    return opponents;
 }
 
 Film::Film(const PixelWindow& window, int full_width, int full_height, bool spectral, Xyz white, std::uint32_t first_sample)
@@ -40,7 +66,7 @@ Film::Film(const PixelWindow& window, int full_width, int full_height, bool spec
       full_width_(full_width),
       full_height_(full_height),
       spectral_(spectral),
-      adaptation_(bradford_adaptation(white, srgb_white)),
+      colors_(colors_for(white)),
       first_sample_(first_sample),
       sums_per_pixel_(spectral ? spectrum_offset + num_bins : spectrum_offset),
       sums_(std::size_t(window.width()) * window.height() * sums_per_pixel_),
@@ -55,63 +81,13 @@ PixelWindow Film::block_window(int index) const {
     return {x0, y0, std::min(x0 + block_edge, width()), std::min(y0 + block_edge, height())};
 }
 
-void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals) {
-    double x = 0.0, y = 0.0, z = 0.0;
-    double lost_x = 0.0, lost_y = 0.0, lost_z = 0.0;
-    std::array<double, max_lanes> in_bin = {};
-    std::array<int, max_lanes> bins = {};
-    for (int i = 0; i < sample.count; ++i) {
-        const Vec3 observer = table_at(tables.observer, sample.wavelength_nm[i]);
-        const double per_density = 1.0 / (double(sample.pdf_per_nm[i]) * sample.count);
-        const double radiance = double(sample.radiance[i]) * per_density;
-        x += radiance * double(observer.x);
-        y += radiance * double(observer.y);
-        z += radiance * double(observer.z);
-        bins[i] = spectral_bin(double(sample.wavelength_nm[i]));
-        in_bin[i] = radiance / bin_width_nm(bins[i]);
-        totals.radiance[bins[i]] += in_bin[i];
-        const double truncated = double(sample.truncated[i]) * per_density;
-        totals.truncated[bins[i]] += truncated / bin_width_nm(bins[i]);
-        totals.truncated_squared[bins[i]] +=
-            sample.count * truncated * truncated / (bin_width_nm(bins[i]) * bin_width_nm(bins[i]));
-        const double lost = truncated * double(table_at(tables.white, sample.wavelength_nm[i]));
-        lost_x += lost * double(observer.x);
-        lost_y += lost * double(observer.y);
-        lost_z += lost * double(observer.z);
-        if (spectral_) sums_[first_sum(pixel) + spectrum_offset + bins[i]] += in_bin[i];
-    }
-    // Lanes of one sample can share a bin: squares are of the sample's whole contribution to it.
-    for (int i = 0; i < sample.count; ++i) {
-        double whole = 0.0;
-        bool first = true;
-        for (int j = 0; j < sample.count; ++j) {
-            if (bins[j] != bins[i]) continue;
-            if (j < i) first = false;
-            whole += in_bin[j];
-        }
-        if (first) totals.radiance_squared[bins[i]] += whole * whole;
-    }
-    ++totals.samples;
-    const Rgb3d lost_rgb = rgb_of({lost_x, lost_y, lost_z});
-    totals.truncated_rgb[0] += lost_rgb.r;
-    totals.truncated_rgb[1] += lost_rgb.g;
-    totals.truncated_rgb[2] += lost_rgb.b;
+FilmSumsView Film::sums_view() {
+    return {sums_.data(), counts_.data(), sums_per_pixel_, spectral_, first_sample_, colors_};
+}
 
-    const Rgb3d rgb = rgb_of({x, y, z});
-    const double values[3] = {rgb.r, rgb.g, rgb.b};
-    const std::array<double, 3> opponents = opponent(values);
-    double* const target = sums_.data() + first_sum(pixel);
-    const bool group_ends = (first_sample_ + ++counts_[pixel]) % noise_group == 0;
-    for (int c = 0; c < 3; ++c) {
-        target[sum_offset + c] += values[c];
-        target[square_offset + c] += values[c] * values[c];
-        double& group = target[group_sum_offset + c];
-        group += opponents[c];
-        if (!group_ends) continue;
-        const double mean = group / noise_group;
-        target[group_square_offset + c] += mean * mean;
-        group = 0.0;
-    }
+void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals) {
+    add_to_pixel(sums_view(), tables, pixel, sample);
+    totals.add(colors_, tables, sample);
 }
 
 std::uint64_t Film::total_samples() const {

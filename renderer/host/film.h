@@ -11,12 +11,9 @@
 #include "formats/colorimetry.h"
 #include "formats/image.h"
 #include "formats/scene.h"
-#include "renderer/core/path_tracer.h"
+#include "renderer/core/path_launch.h"
 
 namespace opal {
-
-/// Spectral bins of 10 nm, centred at 360, 370 ... 830 nm; the two at the ends are half as wide.
-inline constexpr int num_bins = 48;
 
 /// Sums over the whole picture, per bin: for the report and for checking energy without storing spectra per pixel.
 struct SpectrumTotals {
@@ -28,15 +25,14 @@ struct SpectrumTotals {
     std::uint64_t samples = 0;
 
     void add(const SpectrumTotals& other);
-};
-
-/// One path's wavelengths and what it found at them.
-struct FilmSample {
-    const float* wavelength_nm;
-    const float* pdf_per_nm;
-    const float* radiance;
-    const float* truncated;
-    int count;  ///< lanes in use, at most max_lanes
+    void add(const FilmColors& colors, const SpectrumTables& tables, const FilmSample& sample);
+    BinTotals of_bin(int bin) const { return {radiance[bin], radiance_squared[bin], truncated[bin], truncated_squared[bin]}; }
+    void set(int bin, const BinTotals& sums) {
+        radiance[bin] = sums.radiance;
+        radiance_squared[bin] = sums.radiance_squared;
+        truncated[bin] = sums.truncated;
+        truncated_squared[bin] = sums.truncated_squared;
+    }
 };
 
 template <int N>
@@ -44,25 +40,11 @@ FilmSample film_sample(const PathWavelengths<N>& wavelengths, const PathResult<N
     return {wavelengths.wavelength_nm, wavelengths.pdf_per_nm, result.radiance.v, result.truncated.v, wavelengths.count};
 }
 
-/// What the film keeps per pixel, in double precision, in this order; with spectral layers their num_bins sums follow. Opponent
-/// colours are luminance, red-green and blue-yellow (`opponent`).
-inline constexpr int sum_offset = 0;           ///< linear sRGB
-inline constexpr int square_offset = 3;        ///< of single samples
-inline constexpr int group_sum_offset = 6;     ///< opponent colour of the group of samples that is not complete
-inline constexpr int group_square_offset = 9;  ///< of the means of complete groups, opponent
-inline constexpr int spectrum_offset = 12;
-
-/// Samples are stratified over a pixel: how much a pixel's mean scatters shows in groups of consecutive samples, not in single
-/// ones. Group g holds the samples [16 g, 16 g + 16).
-inline constexpr std::uint32_t noise_group = 16;
-
 /// Luminance Y, red-green R - G and blue-yellow B - (R + G) / 2 of linear sRGB.
 std::array<double, 3> opponent(const double* rgb);
 
-/// A block's pixels are rendered together, so that a render can be kept, ended and continued block by block.
-inline constexpr int block_edge = 8;
-
-/// How far a block has come. Whoever renders or reads the block's pixels holds the lock.
+/// A block's pixels are rendered together, so that a render can be kept, ended and continued block by block: how far a block has
+/// come. Whoever renders or reads the block's pixels holds the lock.
 struct FilmBlock {
     mutable std::mutex lock;
     std::uint32_t end_sample = 0;  ///< its samples from the film's first up to here are in
@@ -88,6 +70,8 @@ class Film {
     /// Adds one path's result, the pixel's next sample, to a pixel (counted row by row within the window) and to `totals`. Pixels
     /// may be filled from different threads, each from one at a time.
     void add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals);
+    /// Where its pixels' sums lie, as what adds to them from elsewhere needs it.
+    FilmSumsView sums_view();
 
     const PixelWindow& window() const { return window_; }
     int width() const { return window_.width(); }
@@ -120,12 +104,11 @@ class Film {
 
   private:
     std::size_t first_sum(std::uint32_t pixel) const { return std::size_t(pixel) * std::size_t(sums_per_pixel_); }
-    Rgb3d rgb_of(Xyz color) const { return linear_srgb_from_xyz(adaptation_ * color); }
 
     PixelWindow window_;
     int full_width_, full_height_;
     bool spectral_;
-    Matrix3 adaptation_;
+    FilmColors colors_;
     std::uint32_t first_sample_;
     int sums_per_pixel_;
     std::vector<double> sums_;
@@ -134,9 +117,6 @@ class Film {
     std::atomic<double> noise_floor_ = -1.0;
 };
 
-/// Bin of a wavelength and the bin's width.
-int spectral_bin(double wavelength_nm);
-double bin_width_nm(int bin);
 double bin_centre_nm(int bin);
 
 }  // namespace opal

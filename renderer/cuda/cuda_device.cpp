@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/cuda/cuda_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "renderer/cuda/device_memory.h"
+#include "renderer/cuda/path_kernels.h"
+#include "renderer/host/scene_copy.h"
+
+namespace opal {
+namespace {
+
+static_assert(num_total_parts <= block_pixels, "a thread for each part of the totals");
+
+/// Records of paths that are kept on the device at most.
+constexpr std::size_t record_bytes = std::size_t(1) << 30;
+
+/// Puts a scene's arrays on the device.
+class DeviceCopier : public ArrayCopier {
+  private:
+    const void* copy_bytes(const void* data, std::size_t bytes, const char*) override {
+        return arrays_.emplace_back(std::span(static_cast<const std::byte*>(data), bytes)).data();
+    }
+
+    std::vector<DeviceArray<std::byte>> arrays_;
+};
+
+/// "1.25 GB"
+std::string bytes_text(std::size_t bytes) {
+    return fmt::format("{:.3g} {}", double(bytes) / (bytes < 1000000000 ? 1.0e6 : 1.0e9), bytes < 1000000000 ? "MB" : "GB");
+}
+
+/// Throws SystemError where the device lacks the memory for a scene.
+void require_room(const SceneView& scene, const Bvh& bvh) {
+    SceneMemory memory = scene_memory(scene);
+    memory.items.push_back(
+        {"tree of rays", bvh.nodes().size() * sizeof(BvhNode) + bvh.primitives().size() * sizeof(BvhPrimitive)});
+    memory.items.push_back({"paths under way", record_bytes});
+    std::size_t free_bytes = 0, all_bytes = 0;
+    check_cuda(cudaMemGetInfo(&free_bytes, &all_bytes), "cudaMemGetInfo");
+    if (memory.total_bytes() <= free_bytes) return;
+    std::string needs;
+    for (const SceneMemory::Item& item : memory.items)
+        needs += fmt::format("{}{} {}", needs.empty() ? "" : ", ", item.what, bytes_text(item.bytes));
+    throw SystemError(fmt::format("the scene needs {} of the device's memory, of which {} are free: {}",
+                                  bytes_text(memory.total_bytes()), bytes_text(free_bytes), needs));
+}
+
+class CudaDevice : public PathDevice {
+  public:
+    CudaDevice(const SceneView& scene, const Bvh& bvh) : has_pieces_(bvh.has_pieces()) {
+        cudaDeviceProp properties;
+        check_cuda(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
+        name_ = properties.name;
+        require_room(scene, bvh);
+        const SceneView copy = copied_scene(scene, arrays_);
+        wavelengths_ = copy.wavelengths;
+        scene_.upload({&copy, 1});
+        nodes_.upload(bvh.nodes());
+        primitives_.upload(bvh.primitives());
+        with_pieces_ = {bvh.root(), bvh.reach_mm(), nodes_.data(), primitives_.data(), std::uint32_t(bvh.primitives().size()),
+                        copy.meshes};
+        triangles_ = {bvh.root(), bvh.reach_mm(), nodes_.data(), primitives_.data(), std::uint32_t(bvh.primitives().size()),
+                      copy.meshes};
+    }
+
+    std::string name() const override { return name_; }
+
+    void advance(Film& film, std::span<const int> blocks, std::uint32_t samples) override {
+        if (wavelengths_ <= 4 && !has_pieces_) return advance_in_parts<4>(film, blocks, samples);
+        advance_in_parts<8>(film, blocks, samples);
+    }
+
+  private:
+    /// As many blocks at once as their records have room.
+    template <int N>
+    void advance_in_parts(Film& film, std::span<const int> blocks, std::uint32_t samples) {
+        const std::size_t of_block = std::size_t(block_pixels) * samples * sizeof(PathRecord<N>);
+        const std::size_t at_once = std::max<std::size_t>(1, record_bytes / of_block);
+        for (std::size_t first = 0; first < blocks.size(); first += at_once)
+            launch<N>(film, blocks.subspan(first, std::min(at_once, blocks.size() - first)), samples);
+    }
+
+    template <int N>
+    void launch(Film& film, std::span<const int> blocks, std::uint32_t samples) {
+        const std::vector<LaunchBlock> places = launch_blocks(film, blocks);
+        std::vector<LaunchTotals> totals = launch_totals(film, blocks);
+        std::vector<PathCounters> counters(blocks.size());
+        const FilmSumsView on_host = film.sums_view();
+        const std::size_t pixels = std::size_t(film.width()) * std::size_t(film.height());
+        const std::span<double> sums(on_host.sums, pixels * std::size_t(film.sums_per_pixel()));
+        const std::span<std::uint32_t> counts(on_host.counts, pixels);
+        places_.upload(places);
+        totals_.upload(totals);
+        counters_.upload(counters);
+        sums_.upload(sums);
+        counts_.upload(counts);
+        KernelWork<N> work;
+        work.launch = {scene_.data(), places_.data(), std::uint32_t(places.size()), samples, film.window().x0, film.window().y0,
+                       film.width(),  on_host};
+        work.launch.film.sums = sums_.data();
+        work.launch.film.counts = counts_.data();
+        records_.require(work.launch.num_records() * sizeof(PathRecord<N>));
+        work.records = reinterpret_cast<PathRecord<N>*>(records_.data());
+        work.totals = totals_.data();
+        work.counters = counters_.data();
+        check_cuda(has_pieces_ ? launch_paths(work, with_pieces_) : launch_paths(work, triangles_),
+                   "launch of the paths' kernels");
+        check_cuda(cudaDeviceSynchronize(), "the paths' kernels");
+        totals_.download(totals);
+        counters_.download(counters);
+        fetch(film, blocks, places, totals, counters, samples);
+    }
+
+    /// Takes over the film's new sums. All blocks are locked meanwhile: they come in one piece.
+    void fetch(Film& film, std::span<const int> blocks, std::span<const LaunchBlock> places, std::span<const LaunchTotals> totals,
+               std::span<const PathCounters> counters, std::uint32_t samples) {
+        std::vector<std::unique_lock<std::mutex>> locks;
+        for (const int block : blocks) locks.emplace_back(film.block(block).lock);
+        const FilmSumsView on_host = film.sums_view();
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            const LaunchBlock& place = places[i];
+            for (int y = place.y0; y < place.y1; ++y) {
+                const std::size_t row = std::size_t(y) * std::size_t(film.width()) + std::size_t(place.x0);
+                const std::size_t width = std::size_t(place.x1 - place.x0), of_pixel = std::size_t(film.sums_per_pixel());
+                check_cuda(cudaMemcpyAsync(on_host.sums + row * of_pixel, sums_.data() + row * of_pixel,
+                                           width * of_pixel * sizeof(double), cudaMemcpyDeviceToHost),
+                           "cudaMemcpyAsync of the film");
+                check_cuda(cudaMemcpyAsync(on_host.counts + row, counts_.data() + row, width * sizeof(std::uint32_t),
+                                           cudaMemcpyDeviceToHost),
+                           "cudaMemcpyAsync of the film");
+            }
+        }
+        check_cuda(cudaDeviceSynchronize(), "copying the film");
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            const LaunchBlock& place = places[i];
+            finish_block(film.block(blocks[i]), samples, (place.x1 - place.x0) * (place.y1 - place.y0), totals[i], counters[i]);
+        }
+    }
+
+    std::string name_;
+    bool has_pieces_;
+    int wavelengths_ = 1;
+    DeviceCopier arrays_;
+    DeviceArray<SceneView> scene_;
+    DeviceArray<BvhNode> nodes_;
+    DeviceArray<BvhPrimitive> primitives_;
+    BvhView<true> with_pieces_;
+    BvhView<false> triangles_;
+    DeviceArray<LaunchBlock> places_;
+    DeviceArray<LaunchTotals> totals_;
+    DeviceArray<PathCounters> counters_;
+    DeviceArray<double> sums_;
+    DeviceArray<std::uint32_t> counts_;
+    DeviceArray<std::byte> records_;
+};
+
+}  // namespace
+
+CudaPresence find_cuda_device() {
+    int devices = 0;
+    const cudaError_t error = cudaGetDeviceCount(&devices);
+    if (error != cudaSuccess) {
+        cudaGetLastError();
+        return {"", cudaGetErrorString(error)};
+    }
+    if (devices == 0) return {"", "there is none"};
+    cudaDeviceProp properties;
+    check_cuda(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
+    return {properties.name, ""};
+}
+
+std::unique_ptr<PathDevice> make_cuda_device(const SceneView& scene, const Bvh& bvh) {
+    return std::make_unique<CudaDevice>(scene, bvh);
+}
+
+}  // namespace opal

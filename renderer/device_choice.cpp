@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/device_choice.h"
+
+#include "formats/error.h"
+#if defined(OPAL_HAS_CUDA)
+#include "renderer/cuda/cuda_device.h"
+#endif
+
+namespace opal {
+
+DeviceChoice choose_device(const std::string& asked) {
+    if (asked == "cpu") return {false, "asked for"};
+#if defined(OPAL_HAS_CUDA)
+    const CudaPresence presence = find_cuda_device();
+    if (!presence.name.empty()) return {true, presence.name};
+    const std::string reason = "no CUDA device: " + presence.reason;
+#else
+    const std::string reason = "this build has no CUDA backend";
+#endif
+    if (asked == "cuda") throw InputError("--device cuda: " + reason + "; allowed: auto, cpu");
+    return {false, reason};
+}
+
+MakeDevice device_maker(const DeviceChoice& choice, [[maybe_unused]] const std::vector<MeshData>& meshes) {
+    if (!choice.cuda) return {};
+#if defined(OPAL_HAS_CUDA)
+    return [&meshes](const SceneView& scene) { return make_cuda_device(scene, Bvh(meshes)); };
+#else
+    return {};
+#endif
+}
+
+}  // namespace opal

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <fstream>
+
+#include "renderer/cpu/loop_device.h"
+#include "small_opal.h"
+
+namespace opal {
+namespace {
+
+/// A milky opal on a plane under a lamp.
+class PathDevices : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        folder = std::make_unique<ScratchFolder>();
+        SmallOpal small;
+        small.constants.sphere_diameter_nm = 300.0;
+        small.constants.sigma_s_mie_per_mm = 0.2;
+        small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.2);
+        write_opal_asset(small.make(), *folder / "opal.vdb");
+        std::ofstream(*folder / "scene.toml")
+            << "[render]\nwidth = 44\nheight = 30\nmax_bounces = 24\n[film]\nspectral = true\n"
+               "[camera]\nposition_mm = [0, -20, 12]\ntarget_mm = [0, 0, 0]\n"
+               "[[material]]\nname = \"m\"\n[[object]]\nkind = \"plane\"\nmaterial = \"m\"\ntranslate_mm = [0, 0, -3.1]\n"
+               "[[light]]\nkind = \"sphere\"\nradius_mm = 2\nposition_mm = [5, -5, 12]\nradiance = 20\n"
+               "[[object]]\nkind = \"opal\"\nfile = \"opal.vdb\"\n";
+    }
+    static void TearDownTestSuite() { folder.reset(); }
+
+    /// A scene with what rays need, and a film for a part of its picture.
+    struct Scene {
+        SceneDescription description;
+        std::vector<std::string> notices;
+        HostScene host;
+        EmbreeScene intersector;
+        Bvh bvh;
+
+        explicit Scene(const std::vector<std::string>& overrides = {})
+            : description(read_scene(*folder / "scene.toml", overrides)),
+              host(description, notices),
+              intersector(host.meshes()),
+              bvh(host.meshes()) {}
+        Film film() const { return {description.render.window(), 44, 30, true}; }
+        RenderOutcome render(Film& film, RenderLimits limits, bool device) const {
+            const MakeDevice make = [&](const SceneView& view) { return std::make_unique<LoopDevice>(view, bvh); };
+            return render_cpu(
+                host, intersector, limits, film, [](const RenderProgress&) {}, device ? make : MakeDevice());
+        }
+    };
+
+    static void expect_same(const Film& a, const Film& b) {
+        ASSERT_EQ(a.num_blocks(), b.num_blocks());
+        for (int i = 0; i < a.num_blocks(); ++i) {
+            EXPECT_EQ(a.block(i).end_sample, b.block(i).end_sample);
+            EXPECT_EQ(a.block(i).totals.radiance, b.block(i).totals.radiance);
+            EXPECT_EQ(a.block(i).totals.radiance_squared, b.block(i).totals.radiance_squared);
+            EXPECT_EQ(a.block(i).totals.truncated, b.block(i).totals.truncated);
+            EXPECT_EQ(a.block(i).totals.truncated_squared, b.block(i).totals.truncated_squared);
+            EXPECT_EQ(a.block(i).totals.truncated_rgb, b.block(i).totals.truncated_rgb);
+            EXPECT_EQ(a.block(i).totals.samples, b.block(i).totals.samples);
+            EXPECT_EQ(a.block(i).counters.diffractions, b.block(i).counters.diffractions);
+            EXPECT_EQ(a.block(i).counters.truncated_paths, b.block(i).counters.truncated_paths);
+        }
+        for (std::uint32_t p = 0; p < std::uint32_t(a.width() * a.height()); ++p) {
+            ASSERT_EQ(a.samples(p), b.samples(p)) << p;
+            ASSERT_TRUE(std::ranges::equal(a.sums(p), b.sums(p))) << p;
+        }
+    }
+
+    static inline std::unique_ptr<ScratchFolder> folder;
+};
+
+TEST_F(PathDevices, ALaunchAddsUpAsTheFilmDoes) {
+    const Scene scene({"render.crop=[3,2,42,29]"});
+    Film expected = scene.film(), found = scene.film();
+    const BvhView<true> rays = scene.bvh.view<true>(scene.host.view().meshes);
+    for (int b = 0; b < expected.num_blocks(); ++b) {
+        FilmBlock& block = expected.block(b);
+        const PixelWindow pixels = expected.block_window(b), window = expected.window();
+        for (; block.end_sample < 18; ++block.end_sample)
+            for (int y = pixels.y0; y < pixels.y1; ++y)
+                for (int x = pixels.x0; x < pixels.x1; ++x) {
+                    PathWavelengths<4> wavelengths;
+                    const PathResult<4> result =
+                        trace_sample(scene.host.view(), rays, std::uint32_t(44 * (window.y0 + y) + window.x0 + x),
+                                     block.end_sample, wavelengths, block.counters);
+                    expected.add(scene.host.view().spectra, std::uint32_t(y * expected.width() + x),
+                                 film_sample(wavelengths, result), block.totals);
+                }
+    }
+    LoopDevice device(scene.host.view(), scene.bvh);
+    std::vector<int> all, some;
+    for (int b = 0; b < found.num_blocks(); ++b) (b % 3 == 0 ? some : all).push_back(b);
+    device.advance(found, all, 18);
+    device.advance(found, some, 5);
+    device.advance(found, some, 13);
+    expect_same(expected, found);
+    EXPECT_GT(expected.block(7).counters.diffractions, 0u);
+    std::uint64_t truncated = 0;
+    for (int b = 0; b < expected.num_blocks(); ++b) truncated += expected.block(b).counters.truncated_paths;
+    EXPECT_GT(truncated, 0u);
+}
+
+TEST_F(PathDevices, OneLaneAndEight) {
+    for (const char* companions : {"opal.companions=0", "opal.companions=6"}) {
+        const Scene scene({companions});
+        Film by_cores = scene.film(), by_device = scene.film();
+        scene.render(by_cores, {8, 0.0, 0.0}, false);
+        scene.render(by_device, {8, 0.0, 0.0}, true);
+        // Rays meet triangles within a float's rounding of the same place: most paths are the same.
+        int equal = 0;
+        for (std::uint32_t p = 0; p < 44u * 30u; ++p)
+            equal += std::abs(by_cores.sums(p)[1] - by_device.sums(p)[1]) <= 1.0e-3 * by_cores.sums(p)[1] ? 1 : 0;
+        EXPECT_GT(equal, 44 * 30 / 2) << companions;
+    }
+}
+
+TEST_F(PathDevices, SameBitsWithAnyThreadsAndLaunches) {
+    const Scene scene;
+    Film one = scene.film(), many = scene.film();
+    const RenderLimits limits{96, 0.0, 0.2};
+    {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+        scene.render(one, limits, true);
+    }
+    // In three runs, as after two interruptions.
+    scene.render(many, {7, 0.0, 0.2}, true);
+    scene.render(many, {40, 0.0, 0.2}, true);
+    scene.render(many, limits, true);
+    expect_same(one, many);
+    int settled = 0;
+    for (int b = 0; b < one.num_blocks(); ++b) settled += one.block(b).settled ? 1 : 0;
+    EXPECT_GT(settled, 0);
+    EXPECT_LT(settled, one.num_blocks());
+}
+
+TEST_F(PathDevices, PicturesOfCoresAndDeviceAgree) {
+    const Scene scene;
+    Film by_cores = scene.film(), by_device = scene.film();
+    const RenderOutcome cores = scene.render(by_cores, {64, 0.0, 0.0}, false);
+    Scene other({"render.seed=2"});
+    const RenderOutcome device = other.render(by_device, {64, 0.0, 0.0}, true);
+    for (int bin = 2; bin < num_bins - 8; bin += 3) {
+        const auto mean = [&](const SpectrumTotals& totals) { return totals.radiance[bin] / double(totals.samples); };
+        const auto variance = [&](const SpectrumTotals& totals) {
+            return totals.radiance_squared[bin] / double(totals.samples) / double(totals.samples);
+        };
+        const double error = std::sqrt(variance(cores.totals) + variance(device.totals));
+        EXPECT_NEAR(mean(cores.totals), mean(device.totals), 4.0 * error) << bin;
+        EXPECT_LT(error, 0.05 * mean(cores.totals)) << bin;
+    }
+}
+
+}  // namespace
+}  // namespace opal
