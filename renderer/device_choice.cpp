@@ -10,6 +10,8 @@ namespace opal {
 
 DeviceChoice choose_device(const std::string& asked) {
     if (asked == "cpu") return {false, "asked for"};
+    // The backend has not been compared with the processor on a device yet: nobody gets it unasked.
+    if (asked == "auto") return {false, "the CUDA backend is taken where it is asked for alone"};
 #if defined(OPAL_HAS_CUDA)
     const CudaPresence presence = find_cuda_device();
     if (!presence.name.empty()) return {true, presence.name};
@@ -17,8 +19,7 @@ DeviceChoice choose_device(const std::string& asked) {
 #else
     const std::string reason = "this build has no CUDA backend";
 #endif
-    if (asked == "cuda") throw InputError("--device cuda: " + reason + "; allowed: auto, cpu");
-    return {false, reason};
+    throw InputError("--device cuda: " + reason + "; allowed: auto, cpu");
 }
 
 MakeDevice device_maker(const DeviceChoice& choice, [[maybe_unused]] const std::vector<MeshData>& meshes) {

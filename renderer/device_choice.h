@@ -13,7 +13,7 @@ struct DeviceChoice {
     std::string reason;  ///< for people, of the processor: "this build has no CUDA backend"
 };
 
-/// `asked`: auto, cpu or cuda. Throws InputError where cuda is asked for and cannot be had.
+/// `asked`: auto, cpu or cuda; auto is the processor so far. Throws InputError where cuda is asked for and cannot be had.
 DeviceChoice choose_device(const std::string& asked);
 
 /// Nothing for the processor. `meshes`: of the scene; they must outlive the render.

@@ -69,7 +69,8 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
     app.add_option("--time", options.time, "stop after this long: seconds, or 90s, 5m, 2h");
     app.add_option("--threads", options.threads, "worker threads (default: all cores)")->check(CLI::Range(1, 4096));
     app.add_option("--seed", options.seed, "random seed, instead of render.seed")->check(CLI::Range(std::int64_t(0), INT64_MAX));
-    app.add_option("--device", options.device, "what draws the samples: cpu, cuda, or auto: a CUDA device where there is one")
+    app.add_option("--device", options.device,
+                   "what draws the samples: cpu, cuda, or auto (the processor, until cuda has been tried on devices)")
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
     app.add_option("--crop", options.crop, "draw pixels x0,y0,x1,y1 alone, the ends not counted, instead of render.crop");
     app.add_option("--frames", options.frames, "of an animation: A:B, both counted, from 1");

@@ -106,37 +106,38 @@ class CudaDevice : public PathDevice {
         work.records = reinterpret_cast<PathRecord<N>*>(records_.data());
         work.totals = totals_.data();
         work.counters = counters_.data();
-        check_cuda(has_pieces_ ? launch_paths(work, with_pieces_) : launch_paths(work, triangles_),
-                   "launch of the paths' kernels");
+        cudaError_t launched;
+        if constexpr (N == 8)
+            launched = has_pieces_ ? launch_paths(work, with_pieces_) : launch_paths(work, triangles_);
+        else
+            launched = launch_paths(work, triangles_);
+        check_cuda(launched, "launch of the paths' kernels");
         check_cuda(cudaDeviceSynchronize(), "the paths' kernels");
         totals_.download(totals);
         counters_.download(counters);
         fetch(film, blocks, places, totals, counters, samples);
     }
 
-    /// Takes over the film's new sums. All blocks are locked meanwhile: they come in one piece.
+    /// Takes over the film's new sums; every block is locked while it changes.
     void fetch(Film& film, std::span<const int> blocks, std::span<const LaunchBlock> places, std::span<const LaunchTotals> totals,
                std::span<const PathCounters> counters, std::uint32_t samples) {
-        std::vector<std::unique_lock<std::mutex>> locks;
-        for (const int block : blocks) locks.emplace_back(film.block(block).lock);
         const FilmSumsView on_host = film.sums_view();
+        const std::size_t of_pixel = std::size_t(film.sums_per_pixel());
+        std::vector<std::uint32_t> new_counts(std::size_t(film.width()) * std::size_t(film.height()));
+        std::vector<double> new_sums(new_counts.size() * of_pixel);
+        sums_.download(new_sums);
+        counts_.download(new_counts);
         for (std::size_t i = 0; i < blocks.size(); ++i) {
             const LaunchBlock& place = places[i];
+            FilmBlock& block = film.block(blocks[i]);
+            const std::scoped_lock lock(block.lock);
             for (int y = place.y0; y < place.y1; ++y) {
-                const std::size_t row = std::size_t(y) * std::size_t(film.width()) + std::size_t(place.x0);
-                const std::size_t width = std::size_t(place.x1 - place.x0), of_pixel = std::size_t(film.sums_per_pixel());
-                check_cuda(cudaMemcpyAsync(on_host.sums + row * of_pixel, sums_.data() + row * of_pixel,
-                                           width * of_pixel * sizeof(double), cudaMemcpyDeviceToHost),
-                           "cudaMemcpyAsync of the film");
-                check_cuda(cudaMemcpyAsync(on_host.counts + row, counts_.data() + row, width * sizeof(std::uint32_t),
-                                           cudaMemcpyDeviceToHost),
-                           "cudaMemcpyAsync of the film");
+                const std::size_t first = std::size_t(y) * std::size_t(film.width()) + std::size_t(place.x0);
+                const std::size_t width = std::size_t(place.x1 - place.x0);
+                std::copy_n(new_sums.data() + first * of_pixel, width * of_pixel, on_host.sums + first * of_pixel);
+                std::copy_n(new_counts.data() + first, width, on_host.counts + first);
             }
-        }
-        check_cuda(cudaDeviceSynchronize(), "copying the film");
-        for (std::size_t i = 0; i < blocks.size(); ++i) {
-            const LaunchBlock& place = places[i];
-            finish_block(film.block(blocks[i]), samples, (place.x1 - place.x0) * (place.y1 - place.y0), totals[i], counters[i]);
+            finish_block(block, samples, (place.x1 - place.x0) * (place.y1 - place.y0), totals[i], counters[i]);
         }
     }
 
