@@ -177,11 +177,11 @@ TEST_P(PathDevices, SameBitsWithAnyThreadsAndLaunches) {
 TEST_P(PathDevices, PicturesOfCoresAndDeviceAgree) {
     const Scene scene({"environment.kind=constant"}, "without_lamp.toml");
     Film by_cores = scene.film(), by_device = scene.film();
-    const RenderOutcome cores = scene.render(by_cores, {64, 0.0, 0.0}, false);
+    const RenderOutcome cores = scene.render(by_cores, {128, 0.0, 0.0}, false);
     const Scene other({"environment.kind=constant", "render.seed=2"}, "without_lamp.toml");
-    const RenderOutcome device = other.render(by_device, {64, 0.0, 0.0}, true);
-    // 380 to 700 nm: few wavelengths are drawn beyond.
-    for (int bin = 2; bin < 35; bin += 3) {
+    const RenderOutcome device = other.render(by_device, {128, 0.0, 0.0}, true);
+    // 400 to 670 nm: few wavelengths are drawn beyond.
+    for (int bin = 4; bin < 32; bin += 3) {
         const auto mean = [&](const SpectrumTotals& totals) { return totals.radiance[bin] / double(totals.samples); };
         const auto variance = [&](const SpectrumTotals& totals) {
             return totals.radiance_squared[bin] / double(totals.samples) / double(totals.samples);
