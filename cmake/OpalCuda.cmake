@@ -5,9 +5,10 @@ set_property(CACHE OPAL_CUDA PROPERTY STRINGS AUTO ON OFF)
 
 set(OPAL_HAS_CUDA OFF)
 if(OPAL_CUDA STREQUAL "ON" OR (OPAL_CUDA STREQUAL "AUTO" AND NOT OPAL_SANITIZE AND NOT OPAL_FUZZ))
-  # Turing to Hopper, and code that later devices translate for themselves. The environment's CUDAARCHS goes before.
+  # Turing, Ampere (whose code Ada runs as well), Hopper, and code that later devices translate for themselves. The environment's
+  # CUDAARCHS goes before.
   if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
-    set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90)
+    set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 90)
   endif()
   include(CheckLanguage)
   check_language(CUDA)
