@@ -211,7 +211,7 @@ void compare_hits(const ComparedScene& scene, const Ray& ray, bool met, const Ra
                 return;
             }
         } else if (difference_mm <=
-                   std::max(tolerance.distance_mm, hit_tolerance(scene, ray, nearer_is_ours ? embree_hit : hit).distance_mm)) {
+                   std::max(tolerance.tie_mm, hit_tolerance(scene, ray, nearer_is_ours ? embree_hit : hit).tie_mm)) {
             ++result.ties;
             return;
         }
