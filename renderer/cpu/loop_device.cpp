@@ -3,33 +3,14 @@
 
 #include <tbb/parallel_for.h>
 
-#include <cstdlib>
-#include <cstring>
-
-#include "renderer/host/scene_copy.h"
-
 namespace opal {
 
-class LoopDevice::Memory : public ArrayCopier {
-  private:
-    const void* copy_bytes(const void* data, std::size_t bytes, const char*) override {
-        void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
-        if (!memory) throw std::bad_alloc();
-        blocks_.emplace_back(memory, &std::free);
-        return std::memcpy(memory, data, bytes);
-    }
-
-    std::vector<std::unique_ptr<void, decltype(&std::free)>> blocks_;
-};
-
-LoopDevice::LoopDevice(const SceneView& scene, const Bvh& bvh) : memory_(std::make_unique<Memory>()) {
-    scene_ = copied_scene(scene, *memory_);
-    const BvhNode* nodes = memory_->copy(bvh.nodes().data(), bvh.nodes().size(), "rays");
-    const BvhPrimitive* primitives = memory_->copy(bvh.primitives().data(), bvh.primitives().size(), "rays");
+LoopDevice::LoopDevice(const SceneView& scene, const Bvh& bvh) {
+    scene_ = copied_scene(scene, arrays_);
+    const BvhNode* nodes = arrays_.copy(bvh.nodes().data(), bvh.nodes().size(), "rays");
+    const BvhPrimitive* primitives = arrays_.copy(bvh.primitives().data(), bvh.primitives().size(), "rays");
     bvh_ = {bvh.root(), bvh.reach_mm(), nodes, primitives, std::uint32_t(bvh.primitives().size()), scene_.meshes};
 }
-
-LoopDevice::~LoopDevice() = default;
 
 void LoopDevice::advance(Film& film, std::span<const int> blocks, std::uint32_t samples) {
     if (scene_.wavelengths == 1) return launch<1>(film, blocks, samples);

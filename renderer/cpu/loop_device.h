@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "renderer/host/bvh.h"
 #include "renderer/host/path_device.h"
+#include "renderer/host/scene_copy.h"
 
 namespace opal {
 
@@ -15,7 +13,6 @@ class LoopDevice : public PathDevice {
   public:
     /// `bvh`: over the scene's meshes.
     LoopDevice(const SceneView& scene, const Bvh& bvh);
-    ~LoopDevice() override;
 
     std::string name() const override { return "a device's loop on the processor"; }
     void advance(Film& film, std::span<const int> blocks, std::uint32_t samples) override;
@@ -24,8 +21,7 @@ class LoopDevice : public PathDevice {
     template <int N>
     void launch(Film& film, std::span<const int> blocks, std::uint32_t samples);
 
-    class Memory;
-    std::unique_ptr<Memory> memory_;
+    HostArrayCopier arrays_;
     SceneView scene_;
     BvhView<true> bvh_;
 };

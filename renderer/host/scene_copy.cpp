@@ -2,6 +2,8 @@
 #include "renderer/host/scene_copy.h"
 
 #include <algorithm>
+#include <cstring>
+#include <new>
 
 namespace opal {
 namespace {
@@ -123,6 +125,15 @@ class Adder : public ArrayCopier {
 };
 
 }  // namespace
+
+const void* HostArrayCopier::copy_bytes(const void* data, std::size_t bytes, const char*) {
+    constexpr std::size_t alignment = 64;
+    void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    if (!memory) throw std::bad_alloc();
+    arrays_.emplace_back(memory, &std::free);
+    total_bytes_ += bytes;
+    return std::memcpy(memory, data, bytes);
+}
 
 SceneView copied_scene(const SceneView& scene, ArrayCopier& copier) {
     SceneView copy = scene;

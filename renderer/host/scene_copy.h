@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,18 @@ class ArrayCopier {
   protected:
     /// Aligned to at least 64 bytes.
     virtual const void* copy_bytes(const void* data, std::size_t bytes, const char* what) = 0;
+};
+
+/// Puts copies into memory of the host.
+class HostArrayCopier : public ArrayCopier {
+  public:
+    std::size_t total_bytes() const { return total_bytes_; }
+
+  private:
+    const void* copy_bytes(const void* data, std::size_t bytes, const char* what) override;
+
+    std::vector<std::unique_ptr<void, decltype(&std::free)>> arrays_;
+    std::size_t total_bytes_ = 0;
 };
 
 /// The same scene with all that it points to copied: what crosses to a device. Arrays that several bodies share are copied for

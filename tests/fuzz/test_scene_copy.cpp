@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 
@@ -17,30 +15,6 @@
 
 namespace opal::fuzz {
 namespace {
-
-/// Copies into memory of its own.
-class HostCopier : public ArrayCopier {
-  public:
-    std::size_t total_bytes() const {
-        std::size_t total = 0;
-        for (const auto& block : blocks_) total += block.bytes;
-        return total;
-    }
-
-  private:
-    struct Block {
-        std::unique_ptr<void, decltype(&std::free)> memory;
-        std::size_t bytes;
-    };
-
-    const void* copy_bytes(const void* data, std::size_t bytes, const char*) override {
-        void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
-        blocks_.push_back({{memory, &std::free}, bytes});
-        return std::memcpy(memory, data, bytes);
-    }
-
-    std::vector<Block> blocks_;
-};
 
 std::vector<float> traced(const SceneView& scene, const EmbreeScene& intersector) {
     std::vector<float> found;
@@ -64,7 +38,7 @@ float expect_same_from_copy(const std::filesystem::path& file) {
     const EmbreeScene intersector(meshes);
     auto guides = std::make_unique<LightGuides>(*scene, intersector);
     const std::vector<float> reference = traced(guides->scene(), intersector);
-    HostCopier copier;
+    HostArrayCopier copier;
     const SceneView copy = copied_scene(guides->scene(), copier);
     EXPECT_EQ(scene_memory(guides->scene()).total_bytes(), copier.total_bytes());
     // What is freed is overwritten, so that a pointer that was forgotten finds something else.
