@@ -71,7 +71,7 @@ struct FilmSumsView {
     FilmColors colors;
 };
 
-/// XYZ of a sample's radiance, or of its lost throughput as white light.
+/// XYZ of a sample's radiance.
 OPAL_HD inline void radiance_xyz(const SpectrumTables& tables, const FilmSample& sample, double* xyz) {
     xyz[0] = xyz[1] = xyz[2] = 0.0;
     for (int i = 0; i < sample.count; ++i) {
