@@ -19,6 +19,7 @@
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
 #include "pareto/pareto_bench.h"
+#include "pareto/shots_bench.h"
 
 namespace {
 
@@ -114,7 +115,12 @@ int run_bench(int argc, char** argv) {
     CLI::App* const pareto = app.add_subcommand("pareto", "speed against accuracy: every choice on four opals (most of an hour)");
     pareto->add_option("-o,--output", arguments.folder, "folder for pareto.csv")->required()->type_name("DIR");
     pareto->add_flag("--quick", arguments.quick, "two opals, fewer values, coarser statistics (some minutes)");
-    pareto->add_option("--only", arguments.only, "a choice to measure, as the table names it; repeatable")->type_name("CHOICE");
+    pareto->add_option("--only", arguments.only, "a choice or a scene to measure, as the table names it; repeatable")
+        ->type_name("NAME");
+    CLI::App* const shots =
+        app.add_subcommand("shots", "one opal from afar, as a product, close up: the whole model against --for");
+    shots->add_option("-o,--output", arguments.folder, "folder for shots.csv")->required()->type_name("DIR");
+    shots->add_flag("--quick", arguments.quick, "a sixteenth of the samples");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -133,6 +139,10 @@ int run_bench(int argc, char** argv) {
     }
     if (pareto->parsed()) {
         opal::bench_pareto(arguments.folder, arguments.quick, arguments.only);
+        return 0;
+    }
+    if (shots->parsed()) {
+        opal::bench_shots(arguments.folder, arguments.quick);
         return 0;
     }
     if (bvh->parsed()) {
