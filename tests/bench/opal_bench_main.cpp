@@ -18,6 +18,7 @@
 #include "media_bench.h"
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
+#include "stability_bench.h"
 
 namespace {
 
@@ -109,6 +110,11 @@ int run_bench(int argc, char** argv) {
         app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
     convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
+    CLI::App* const stability = app.add_subcommand("stability", "where each method degrades, and how (some minutes)");
+    stability->add_option("-o,--output", arguments.folder, "folder for stability.csv and its chart")
+        ->required()
+        ->type_name("DIR");
+    stability->add_flag("--quick", arguments.quick, "fewer samples and places (under a minute)");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -123,6 +129,10 @@ int run_bench(int argc, char** argv) {
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (stability->parsed()) {
+        opal::bench_stability(arguments.folder, arguments.quick);
         return 0;
     }
     if (bvh->parsed()) {
