@@ -18,6 +18,7 @@
 #include "media_bench.h"
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
+#include "scaling_bench.h"
 #include "stability_bench.h"
 
 namespace {
@@ -115,6 +116,9 @@ int run_bench(int argc, char** argv) {
         ->required()
         ->type_name("DIR");
     stability->add_flag("--quick", arguments.quick, "fewer samples and places (under a minute)");
+    CLI::App* const scaling = app.add_subcommand("scaling", "cost against size, with fitted exponents (some minutes)");
+    scaling->add_option("-o,--output", arguments.folder, "folder for the .csv files and the chart")->required()->type_name("DIR");
+    scaling->add_flag("--quick", arguments.quick, "small sizes alone (under a minute)");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -129,6 +133,10 @@ int run_bench(int argc, char** argv) {
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (scaling->parsed()) {
+        opal::bench_scaling(arguments.folder, arguments.quick);
         return 0;
     }
     if (stability->parsed()) {

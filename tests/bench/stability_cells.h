@@ -23,12 +23,12 @@ GrazingError grazing_error(WalkKind kind, double angle_rad, int rays);
 
 /// Voxels against cells.
 struct VoxelError {
+    int resolution = 0;
     Estimate wrong;  ///< share of the rays' length in the wrong grain
-    double grain_mm = 0.0, voxel_mm = 0.0;
 };
-/// Grains of one site each, `grain_mm` apart in the mean; voxels of 20 mm / `resolution`. A ball of four grains across, at least
-/// 4 mm, stands for the gem of 20 mm, of which it is a piece.
-VoxelError voxel_error(double grain_mm, int resolution, int rays);
+/// Grains of one site each, as large as balls of `grain_mm`; voxels of 20 mm / resolution. A ball of four grains across, at least
+/// 4 mm, stands for a gem of 20 mm. Cells, which are exact to rounding, tell the right grains.
+std::vector<VoxelError> voxel_errors(double grain_mm, const std::vector<int>& resolutions, int rays);
 
 /// Where an opal lies.
 enum class Place { whole_scene_moved, moved_in_its_file };

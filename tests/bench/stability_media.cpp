@@ -52,7 +52,7 @@ Estimate plate_transmission_ratio(double optical_depth, int paths) {
     const double face = 0.04, passed = std::exp(-optical_depth);
     const double expected = (1.0 - face) * (1.0 - face) * passed / (1.0 - face * face * passed * passed);
     const Goniometer::Reading reading = goniometer.radiance({0.0f, 0.0f, -1.0f}, 0.1, 550.0, paths, 1);
-    if (expected < 1.0e-30) return {reading.mean < 1.0e-30 ? 1.0 : 0.0, 0.0};
+    if (expected < 1.0e-37) return {reading.mean < 1.0e-37 ? 1.0 : 0.0, 0.0};
     return {reading.mean / expected, reading.standard_error / expected};
 }
 

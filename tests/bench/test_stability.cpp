@@ -7,6 +7,7 @@
 #include "../formats/expect_error.h"
 #include "formats/scene.h"
 #include "formats/units.h"
+#include "power_law.h"
 #include "renderer/host/grain_source.h"
 #include "renderer/host/host_scene.h"
 #include "renderer/optics/two_beam_block.h"
@@ -28,8 +29,10 @@ bool mentions(const std::vector<std::string>& texts, const std::string& part) {
 
 /// The printed quadratic loses crossings where weights are nearly equal; the factored one and sphere tracing do not.
 TEST(Stability, HyperboloidNeedsUnlikeWeights) {
-    EXPECT_LT(wrong_length(WalkKind::hyperboloid, 3.0, 0.0, 60).mean, 1.0e-3);
-    EXPECT_GT(wrong_length(WalkKind::hyperboloid, 1.0e-4, 0.0, 60).mean, 0.04);
+    const Estimate unlike = wrong_length(WalkKind::hyperboloid, 3.0, 0.0, 60),
+                   alike = wrong_length(WalkKind::hyperboloid, 1.0e-4, 0.0, 60);
+    EXPECT_GT(alike.mean, 0.04);
+    EXPECT_LT(unlike.mean, 0.1 * alike.mean);
     for (const double spread_mm : {3.0, 1.0e-4}) {
         EXPECT_LT(wrong_length(WalkKind::cells, spread_mm, 0.0, 60).mean, 1.0e-5);
         EXPECT_LT(wrong_length(WalkKind::sphere_tracing, spread_mm, 0.0, 60).mean, 1.0e-4);
@@ -54,7 +57,7 @@ TEST(Stability, ScenesFarFromTheOriginLoseNoLight) {
     for (const double offset_mm : {0.0, 1.0e4, 1.0e6}) {
         const FarRender far = far_render(Place::whole_scene_moved, offset_mm, 8);
         EXPECT_TRUE(far.notices.empty());
-        EXPECT_EQ(far.lost.mean, 0.0) << offset_mm;
+        EXPECT_LE(far.lost.mean, 1.0e-4) << offset_mm;
         EXPECT_NEAR(far.missing.mean, 0.0, 4.0 * far.missing.standard_error) << offset_mm;
     }
 }
@@ -71,8 +74,8 @@ TEST(Stability, GrazingBoundaries) {
 }
 
 TEST(Stability, VoxelsMislabelInProportionToTheirSize) {
-    const VoxelError coarse = voxel_error(1.0, 128, 150), fine = voxel_error(1.0, 512, 150);
-    const double ratio = coarse.wrong.mean / fine.wrong.mean;
+    const std::vector<VoxelError> errors = voxel_errors(1.0, {128, 512}, 150);
+    const double ratio = errors[0].wrong.mean / errors[1].wrong.mean;
     EXPECT_GT(ratio, 3.0);
     EXPECT_LT(ratio, 5.0);
     // A note where grains are less than six voxels across and nothing better is in the file.
@@ -121,7 +124,7 @@ TEST(Stability, ThreeBeamTheoryHasItsClosedForms) {
 /// Where two families are met at once their odds add, which is a little less than they reflect together.
 TEST(Stability, FamiliesTogetherNearZoneEdges) {
     for (const double block_um : {10.0, 25.0}) {
-        const ZoneEdge at = zone_edge(0.0, block_um), away = zone_edge(units::rad_from_deg(10.0), block_um);
+        const ZoneEdge at = zone_edge(0.0, block_um), away = zone_edge(units::rad_from_deg(5.0), block_um);
         EXPECT_EQ(at.strong_families, 2);
         EXPECT_EQ(away.strong_families, 1);
         EXPECT_LT(at.energy_error, -0.05);
@@ -180,6 +183,18 @@ TEST(Stability, NarrowBandsNeedContinuousWavelengths) {
     const BandError drawn = band_error(WavelengthChoice::continuous, 1.0, 60, 100000);
     EXPECT_NEAR(drawn.energy_mean.mean, 0.0, 4.0 * drawn.energy_mean.standard_error);
     EXPECT_LT(drawn.energy_mean.standard_error, 0.02);
+}
+
+/// Logarithms 0, 1, 2 of the size and 0, 2, 3 of the cost: slope 1.5, residuals -1/6, 1/3, -1/6, last slope 1.
+TEST(Scaling, ExponentsOfPowerLaws) {
+    const double e = std::exp(1.0);
+    const PowerLaw law = fit_power_law({{1.0, 1.0}, {e, e * e}, {e * e, e * e * e}});
+    EXPECT_NEAR(law.exponent, 1.5, 1.0e-12);
+    EXPECT_NEAR(law.standard_error, std::sqrt(1.0 / 12.0), 1.0e-12);
+    EXPECT_NEAR(law.last_exponent, 1.0, 1.0e-12);
+    const PowerLaw exact = fit_power_law({{10.0, 7.0}, {100.0, 700.0}});
+    EXPECT_NEAR(exact.exponent, 2.0, 1.0e-12);
+    EXPECT_EQ(exact.standard_error, 0.0);
 }
 
 TEST(Stability, WarningsSayWhatWentWrong) {
