@@ -2,12 +2,11 @@
 #include "scaling_bench.h"
 
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <ctime>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <numeric>
 
 #include "bench_chart.h"
@@ -16,7 +15,6 @@
 #include "formats/command.h"
 #include "formats/error.h"
 #include "formats/recipe.h"
-#include "formats/scene.h"
 #include "modeler/labelling.h"
 #include "modeler/neighbour_graph.h"
 #include "modeler/shape.h"
@@ -25,9 +23,9 @@
 #include "power_law.h"
 #include "renderer/core/cell_walk.h"
 #include "renderer/host/grain_grid.h"
-#include "renderer/host/host_scene.h"
 #include "small_opal.h"
 #include "stability_media.h"
+#include "timed_render.h"
 
 namespace opal {
 namespace {
@@ -41,10 +39,6 @@ struct ScalingRow {
     std::string unit;
 };
 
-double processor_seconds() {
-    return double(std::clock()) / CLOCKS_PER_SEC;
-}
-
 /// Processor seconds of the work, done again until a fifth of a second has been spent.
 double processor_seconds_of(const std::function<void()>& work) {
     const double begin = processor_seconds();
@@ -54,13 +48,6 @@ double processor_seconds_of(const std::function<void()>& work) {
         ++count;
     } while (processor_seconds() - begin < 0.2);
     return (processor_seconds() - begin) / count;
-}
-
-double resident_bytes() {
-    std::ifstream file("/proc/self/statm");
-    double pages = 0.0, resident = 0.0;
-    file >> pages >> resident;
-    return 4096.0 * resident;
 }
 
 std::unique_ptr<Shape> ball(double diameter_mm) {
@@ -90,41 +77,17 @@ Chords chords_of(const Shape& shape, int count) {
     return chords;
 }
 
-/// A ball of 6 mm before the studio; `samples` per pixel.
-struct OpalRender {
-    double processor_us_per_path = 0.0, wall_us_per_path = 0.0;
-    int reciprocal_points = 0;
-    double bytes = 0.0;  ///< by which the process grew for the film and the picture
-};
-
-OpalRender render_opal(double sphere_diameter_nm, int width, int samples, int threads) {
+/// A ball of 6 mm in the studio.
+TimedRender render_opal(double sphere_diameter_nm, int width, int samples, int threads) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = sphere_diameter_nm;
     small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.5);
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
-    const SceneDescription scene =
-        parse_scene(fmt::format("[render]\nwidth = {}\nheight = {}\n[camera]\nposition_mm = [0, -20, 12]\ntarget_mm = [0, 0, 0]\n"
-                                "vertical_fov_deg = 12\n[[object]]\nkind = \"opal\"\nfile = '{}'\n",
-                                width, width * 3 / 4, (folder / "opal.vdb").string()),
-                    "scaling.toml", {});
-    std::vector<std::string> notices;
-    const HostScene host(scene, notices);
-    const EmbreeScene intersector(host.meshes());
-    OpalRender result;
-    result.reciprocal_points = host.reciprocal_points();
-    const double before_bytes = resident_bytes();
-    Film film(scene.render.width, scene.render.height, false);
-    tbb::task_arena arena(threads);
-    const double begin = processor_seconds();
-    RenderOutcome outcome;
-    arena.execute([&] { outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {}); });
-    const double paths = double(outcome.new_samples);
-    result.processor_us_per_path = 1.0e6 * (processor_seconds() - begin) / paths;
-    result.wall_us_per_path = 1.0e6 * outcome.seconds / paths;
-    const Image image = film.to_image();
-    result.bytes = resident_bytes() - before_bytes;
-    return result;
+    return timed_render(fmt::format("[render]\nwidth = {}\nheight = {}\n[camera]\nposition_mm = [0, -20, 12]\ntarget_mm = [0, 0, "
+                                    "0]\nvertical_fov_deg = 12\n[[object]]\nkind = \"opal\"\nfile = '{}'\n",
+                                    width, width * 3 / 4, (folder / "opal.vdb").string()),
+                        samples, threads);
 }
 
 class ScalingBench {
@@ -245,11 +208,11 @@ class ScalingBench {
 
     void turn_by_points() {
         for (const double diameter_nm : {200.0, 250.0, 260.0, 300.0, 350.0, 400.0}) {
-            const OpalRender render = render_opal(diameter_nm, 96, quick_ ? 4 : 48, 2);
+            const TimedRender render = render_opal(diameter_nm, 96, quick_ ? 4 : 48, 2);
             if (!rows_.empty() && rows_.back().what == "rendering: a path, ball of 6 mm" &&
                 rows_.back().size == double(render.reciprocal_points))
                 continue;
-            add("rendering: a path, ball of 6 mm", "reciprocal points", render.reciprocal_points, render.processor_us_per_path,
+            add("rendering: a path, ball of 6 mm", "reciprocal points", render.reciprocal_points, render.processor_us_per_path(),
                 "us");
         }
     }
@@ -264,18 +227,18 @@ class ScalingBench {
 
     void render_pixels() {
         for (int width = 64; width <= (quick_ ? 256 : 2048); width *= 2) {
-            const OpalRender render = render_opal(250.0, width, quick_ ? 1 : std::clamp(4096 / width, 1, 16), 2);
+            const TimedRender render = render_opal(250.0, width, quick_ ? 1 : std::clamp(4096 / width, 1, 16), 2);
             const double pixels = double(width) * (width * 3 / 4);
-            add("rendering: a path, at any picture's size", "pixels", pixels, render.processor_us_per_path, "us");
-            if (width >= 256) add("memory: film and picture", "pixels", pixels, render.bytes, "bytes");
+            add("rendering: a path, at any picture's size", "pixels", pixels, render.processor_us_per_path(), "us");
+            if (width >= 256) add("memory: film and picture", "pixels", pixels, render.grown_bytes, "bytes");
         }
     }
 
     void use_threads() {
         for (const int threads : {1, 2}) {
-            const OpalRender render = render_opal(250.0, quick_ ? 96 : 240, quick_ ? 4 : 24, threads);
-            add("rendering: a path, processor time", "threads", threads, render.processor_us_per_path, "us");
-            add("rendering: a path, by the clock", "threads", threads, render.wall_us_per_path, "us by the clock");
+            const TimedRender render = render_opal(250.0, quick_ ? 96 : 240, quick_ ? 4 : 24, threads);
+            add("rendering: a path, processor time", "threads", threads, render.processor_us_per_path(), "us");
+            add("rendering: a path, by the clock", "threads", threads, render.clock_us_per_path(), "us by the clock");
         }
     }
 

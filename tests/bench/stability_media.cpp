@@ -3,22 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <ctime>
-
 #include "formats/scene.h"
 #include "goniometer.h"
 #include "renderer/core/medium_flight.h"
 #include "renderer/host/medium_fields.h"
 #include "small_opal.h"
+#include "timed_render.h"
 
 namespace opal {
 namespace {
 
 constexpr double ball_radius_mm = 3.0;
-
-double processor_seconds() {
-    return double(std::clock()) / CLOCKS_PER_SEC;
-}
 
 /// Majorants of the fields that vary, times a factor; minima as they are, or lower where they would pass them.
 MajorantGrid scaled(const MajorantGrid& grid, const MediumView& medium, float factor) {
@@ -69,9 +64,7 @@ ScatteringBall scattering_ball(double optical_depth, int max_bounces, int sample
         "position_mm = [0, -20, 5]\ntarget_mm = [0, 0, 0]\nvertical_fov_deg = 8\n[environment]\nkind = \"constant\"\n[opal]\n"
         "diffraction = \"none\"\n[[object]]\nkind = \"opal\"\nfile = '{}'\n",
         max_bounces, (folder / "ball.vdb").string());
-    const double begin = processor_seconds();
-    const Rendered rendered = render_text(text, samples);
-    const double seconds = processor_seconds() - begin;
+    const TimedRender rendered = timed_render(text, samples);
     const MeanEstimate green = region_mean(rendered.image, "G", 0, 0, 16, 16);
     const std::uint64_t n = rendered.outcome.totals.samples;
     ScatteringBall result;
@@ -80,7 +73,7 @@ ScatteringBall scattering_ball(double optical_depth, int max_bounces, int sample
     result.truncated = {truncated, std::sqrt(std::max(0.0, truncated * (1.0 - truncated)) / double(n))};
     result.cut_off = share_of(rendered.outcome.counters.truncated_paths, n);
     result.scatterings = double(rendered.outcome.counters.scatterings) / double(n);
-    result.us_per_path = 1.0e6 * std::min(seconds, rendered.outcome.seconds * 2.0) / double(n);
+    result.us_per_path = rendered.processor_us_per_path();
     return result;
 }
 

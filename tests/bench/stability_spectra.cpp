@@ -111,7 +111,7 @@ void add_spectrum_rows(bool quick, StabilityRows& rows) {
                                      ? "Stability.NarrowBandsNeedContinuousWavelengths; SpectralLayers.IntegrateToTheColour"
                                      : "Stability.NarrowBandsNeedContinuousWavelengths";
         for (const double width_nm : {0.1, 0.3, 1.0, 2.0, 5.0, 8.0, 10.0, 15.0, 20.0}) {
-            const BandError error = band_error(choice, width_nm, continuous ? places / 4 : places, wavelengths);
+            const BandError error = band_error(choice, width_nm, places, wavelengths);
             const auto add = [&](Estimate value, const std::string& unit) {
                 rows.push_back({"narrow bands", name_of(choice), "width of the band (nm)", width_nm, value, unit, outcome, test});
             };
