@@ -43,6 +43,10 @@ def main():
                 short += f"\n  N^({fit['exponent']:.2f} ± {fit['standard_error']:.2f}), last {fit['last_exponent']:.2f}"
             style.curve(axis, number, points, short)
             axis.set_xlabel(next(row["size_is"] for row in rows if row["what"] == name))
+        sizes = sorted({row["size"] for row in rows if row["what"] in names})
+        if sizes[-1] / sizes[0] < 40.0:
+            axis.set_xticks(sizes, [f"{size:.0f}" for size in sizes], minor=False)
+            axis.set_xticks([], minor=True)
         low, high = axis.get_ylim()
         if high / low < 30.0:
             axis.set_ylim(low / 3.0, high * 3.0)

@@ -18,6 +18,7 @@
 #include "media_bench.h"
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
+#include "pareto/pareto_bench.h"
 #include "scaling_bench.h"
 #include "stability_bench.h"
 
@@ -29,6 +30,7 @@ struct BenchArguments {
     std::string scenes = "examples/media_checks";
     int samples = 16;
     int rays = 10'000'000;
+    std::vector<std::string> only;
 };
 
 int run_modeler(const BenchArguments& arguments) {
@@ -111,6 +113,10 @@ int run_bench(int argc, char** argv) {
         app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
     convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
+    CLI::App* const pareto = app.add_subcommand("pareto", "speed against accuracy: every choice on four opals (most of an hour)");
+    pareto->add_option("-o,--output", arguments.folder, "folder for pareto.csv")->required()->type_name("DIR");
+    pareto->add_flag("--quick", arguments.quick, "two opals, fewer values, coarser statistics (some minutes)");
+    pareto->add_option("--only", arguments.only, "a choice to measure, as the table names it; repeatable")->type_name("CHOICE");
     CLI::App* const stability = app.add_subcommand("stability", "where each method degrades, and how (some minutes)");
     stability->add_option("-o,--output", arguments.folder, "folder for stability.csv and its chart")
         ->required()
@@ -133,6 +139,10 @@ int run_bench(int argc, char** argv) {
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (pareto->parsed()) {
+        opal::bench_pareto(arguments.folder, arguments.quick, arguments.only);
         return 0;
     }
     if (scaling->parsed()) {

@@ -12,7 +12,7 @@ struct TimedRender {
     RenderOutcome outcome;
     double processor_s = 0.0;   ///< of all threads, for the paths alone
     int reciprocal_points = 0;  ///< of the scene's opal
-    double grown_bytes = 0.0;   ///< by which the process grew for the film and the picture
+    double film_bytes = 0.0;    ///< of the film's sums and counts and of the picture made from them
 
     double processor_us_per_path() const { return 1.0e6 * processor_s / double(outcome.new_samples); }
     double clock_us_per_path() const { return 1.0e6 * outcome.seconds / double(outcome.new_samples); }
