@@ -21,12 +21,12 @@
 #include "renderer/host/film_preview.h"
 #include "renderer/host/live_view.h"
 #include "renderer/host/render_fingerprint.h"
+#include "renderer/host/render_warnings.h"
 #include "renderer/render_animation.h"
 #include "renderer/render_command.h"
 #include "renderer/render_options.h"
 #include "renderer/render_report.h"
 #include "renderer/render_still.h"
-#include "renderer/render_warnings.h"
 
 namespace opal {
 namespace {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <functional>
 
 #include "bench_chart.h"
 #include "formats/atomic_file.h"

@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <ctime>
-#include <functional>
 #include <numeric>
 
 #include "cell_samples.h"
 #include "formats/recipe.h"
-#include "formats/scene.h"
 #include "modeler/labelling.h"
 #include "modeler/shape.h"
 #include "modeler/sites.h"
@@ -17,8 +15,8 @@
 #include "renderer/core/hyperboloid_walk.h"
 #include "renderer/core/sphere_tracing_walk.h"
 #include "renderer/host/grain_grid.h"
-#include "renderer/host/host_scene.h"
 #include "small_opal.h"
+#include "timed_render.h"
 
 namespace opal {
 namespace {
@@ -174,9 +172,9 @@ FarRender far_render(Place place, double offset_mm, int samples) {
         "target_mm = [{1}, 0, 0]\nvertical_fov_deg = 14\n[environment]\nkind = \"constant\"\n[[object]]\nkind = \"opal\"\n"
         "translate_mm = [{0}, 0, 0]\nfile = '{2}'\n",
         translate_mm, camera_mm, (folder / "opal.vdb").string());
+    const TimedRender rendered = timed_render(text, samples);
     FarRender result;
-    const HostScene host(parse_scene(text, "far.toml", {}), result.notices);
-    const Rendered rendered = render_text(text, samples);
+    result.notices = rendered.notices;
     const MeanEstimate green = region_mean(rendered.image, "G", 0, 0, 48, 48);
     const double n = double(rendered.outcome.totals.samples);
     result.missing = {1.0 - green.mean - rendered.outcome.totals.truncated_rgb[1] / n, green.standard_error};

@@ -17,10 +17,9 @@ double processor_seconds() {
 
 TimedRender timed_render(const std::string& scene_toml, int samples, int threads) {
     const SceneDescription scene = parse_scene(scene_toml, "bench.toml", {});
-    std::vector<std::string> notices;
-    const HostScene host(scene, notices);
-    const EmbreeScene intersector(host.meshes());
     TimedRender result;
+    const HostScene host(scene, result.notices);
+    const EmbreeScene intersector(host.meshes());
     result.reciprocal_points = host.reciprocal_points();
     Film film(scene.render.width, scene.render.height, scene.film.spectral, film_white(scene.film));
     tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "renderer/cpu/render_cpu.h"
 
@@ -9,6 +10,7 @@ namespace opal {
 
 struct TimedRender {
     Image image;
+    std::vector<std::string> notices;  ///< that loading gave
     RenderOutcome outcome;
     double processor_s = 0.0;   ///< of all threads, for the paths alone
     int reciprocal_points = 0;  ///< of the scene's opal

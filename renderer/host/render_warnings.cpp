@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/render_warnings.h"
+#include "renderer/host/render_warnings.h"
 
 #include <fmt/format.h>
 
