@@ -19,6 +19,7 @@
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
 #include "pareto/pareto_bench.h"
+#include "pareto/shots_bench.h"
 #include "scaling_bench.h"
 #include "stability_bench.h"
 
@@ -93,6 +94,14 @@ int run_bench(int argc, char** argv) {
         app.add_subcommand("bvh", "rays against triangles and patches: devices' hierarchy and Embree (a minute)");
     bvh->add_option("-o,--output", arguments.folder, "folder for bvh.csv")->required()->type_name("DIR");
     bvh->add_option("--rays", arguments.rays, "over all scenes")->check(CLI::Range(1000, 1 << 30))->capture_default_str();
+    CLI::App* const stability = app.add_subcommand("stability", "where each method degrades, and how (some minutes)");
+    stability->add_option("-o,--output", arguments.folder, "folder for stability.csv and its chart")
+        ->required()
+        ->type_name("DIR");
+    stability->add_flag("--quick", arguments.quick, "fewer samples and places (under a minute)");
+    CLI::App* const scaling = app.add_subcommand("scaling", "cost against size, with fitted exponents (some minutes)");
+    scaling->add_option("-o,--output", arguments.folder, "folder for the .csv files and the chart")->required()->type_name("DIR");
+    scaling->add_flag("--quick", arguments.quick, "small sizes alone (under a minute)");
     CLI::App* const media = app.add_subcommand("media", "flights through fields: majorants and estimators (about a minute)");
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
@@ -116,15 +125,12 @@ int run_bench(int argc, char** argv) {
     CLI::App* const pareto = app.add_subcommand("pareto", "speed against accuracy: every choice on four opals (most of an hour)");
     pareto->add_option("-o,--output", arguments.folder, "folder for pareto.csv")->required()->type_name("DIR");
     pareto->add_flag("--quick", arguments.quick, "two opals, fewer values, coarser statistics (some minutes)");
-    pareto->add_option("--only", arguments.only, "a choice to measure, as the table names it; repeatable")->type_name("CHOICE");
-    CLI::App* const stability = app.add_subcommand("stability", "where each method degrades, and how (some minutes)");
-    stability->add_option("-o,--output", arguments.folder, "folder for stability.csv and its chart")
-        ->required()
-        ->type_name("DIR");
-    stability->add_flag("--quick", arguments.quick, "fewer samples and places (under a minute)");
-    CLI::App* const scaling = app.add_subcommand("scaling", "cost against size, with fitted exponents (some minutes)");
-    scaling->add_option("-o,--output", arguments.folder, "folder for the .csv files and the chart")->required()->type_name("DIR");
-    scaling->add_flag("--quick", arguments.quick, "small sizes alone (under a minute)");
+    pareto->add_option("--only", arguments.only, "a choice or a scene to measure, as the table names it; repeatable")
+        ->type_name("NAME");
+    CLI::App* const shots =
+        app.add_subcommand("shots", "one opal from afar, as a product, close up: the whole model against --for");
+    shots->add_option("-o,--output", arguments.folder, "folder for shots.csv")->required()->type_name("DIR");
+    shots->add_flag("--quick", arguments.quick, "a sixteenth of the samples");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -136,6 +142,14 @@ int run_bench(int argc, char** argv) {
         opal::bench_color(arguments.folder);
         return 0;
     }
+    if (stability->parsed()) {
+        opal::bench_stability(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (scaling->parsed()) {
+        opal::bench_scaling(arguments.folder, arguments.quick);
+        return 0;
+    }
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
@@ -145,12 +159,8 @@ int run_bench(int argc, char** argv) {
         opal::bench_pareto(arguments.folder, arguments.quick, arguments.only);
         return 0;
     }
-    if (scaling->parsed()) {
-        opal::bench_scaling(arguments.folder, arguments.quick);
-        return 0;
-    }
-    if (stability->parsed()) {
-        opal::bench_stability(arguments.folder, arguments.quick);
+    if (shots->parsed()) {
+        opal::bench_shots(arguments.folder, arguments.quick);
         return 0;
     }
     if (bvh->parsed()) {

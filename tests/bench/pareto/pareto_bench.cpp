@@ -2,12 +2,8 @@
 #include "pareto_bench.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <time.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -18,13 +14,9 @@
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
-#include "formats/scene.h"
-#include "gem_samples.h"
 #include "opal_builds.h"
 #include "picture_error.h"
-#include "renderer/cpu/light_guides.h"
-#include "renderer/host/scene_copy.h"
-#include "spectral_lines.h"
+#include "subject.h"
 #include "variants.h"
 
 namespace opal {
@@ -37,105 +29,11 @@ struct Extent {
     int width, seeds, samples;  ///< samples per pixel and seed
 };
 
-double thread_processor_s() {
-    timespec time = {};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
 std::vector<std::string> scene_settings(const ParetoVariant& variant, const std::filesystem::path& opal, int width) {
     std::vector<std::string> settings = {"object.0.file='" + opal.string() + "'", fmt::format("render.width={}", width),
                                          fmt::format("render.height={}", width * 3 / 4), "render.filter=box"};
     settings.insert(settings.end(), variant.scene.begin(), variant.scene.end());
     return settings;
-}
-
-/// A variant in memory, and what has been drawn of it.
-class Subject {
-  public:
-    Subject(const ParetoScene& scene, const ParetoVariant& variant, const OpalBuild& opal, int width)
-        : description_(read_scene(scene.scene, scene_settings(variant, opal.file, width))),
-          host_(description_, notices_),
-          intersector_(host_.meshes()),
-          guides_(host_, intersector_),
-          lines_(host_.view().spectra, variant.spectral),
-          load_s_(watch_.seconds()) {}
-
-    std::vector<std::uint32_t> pixels() const { return gem_pixels(host_.view(), intersector_); }
-    std::size_t memory_bytes() const { return scene_memory(guides_.scene()).total_bytes(); }
-    double load_s() const { return load_s_; }
-    const SeedPictures& pictures() const { return pictures_; }
-    /// Processor time of each seed, per sample.
-    const std::vector<double>& sample_s() const { return sample_s_; }
-
-    /// Draws the pixels once more, with another seed.
-    void draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed) {
-        const int lanes = host_.view().wavelengths;
-        if (lanes == 1)
-            draw_lanes<1>(pixels, samples, seed);
-        else if (lanes <= 4)
-            draw_lanes<4>(pixels, samples, seed);
-        else
-            draw_lanes<8>(pixels, samples, seed);
-    }
-
-  private:
-    template <int N>
-    void draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed) {
-        SceneView view = guides_.scene();
-        view.seed = seed;
-        lines_.confine(view.spectra);
-        std::vector<Opponent> means(pixels.size());
-        std::atomic<double> processor_s = 0.0;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              const double begin_s = thread_processor_s();
-                              for (std::size_t p = range.begin(); p < range.end(); ++p)
-                                  means[p] = mean_of_pixel<N>(view, pixels[p], samples);
-                              processor_s += thread_processor_s() - begin_s;
-                          });
-        pictures_.push_back(std::move(means));
-        sample_s_.push_back(processor_s / double(pixels.size()) / samples);
-    }
-
-    template <int N>
-    Opponent mean_of_pixel(const SceneView& view, std::uint32_t pixel, int samples) const {
-        Opponent mean = {};
-        PathCounters counters;
-        for (int sample = 0; sample < samples; ++sample) {
-            PathWavelengths<N> wavelengths;
-            const PathResult<N> result = trace_sample(view, intersector_, pixel, std::uint32_t(sample), wavelengths, counters);
-            Xyz sum{0.0, 0.0, 0.0};
-            for (int i = 0; i < wavelengths.count; ++i) {
-                const Xyz color = lines_.color(view.spectra, wavelengths.wavelength_nm[i], wavelengths.pdf_per_nm[i]);
-                const double radiance = double(result.radiance.v[i]) / wavelengths.count;
-                sum = {sum.x + radiance * color.x, sum.y + radiance * color.y, sum.z + radiance * color.z};
-            }
-            const Opponent found = opponent_of(sum);
-            for (std::size_t c = 0; c < 3; ++c) mean[c] += found[c] / samples;
-        }
-        return mean;
-    }
-
-    const Stopwatch watch_;
-    std::vector<std::string> notices_;
-    const SceneDescription description_;
-    const HostScene host_;
-    const EmbreeScene intersector_;
-    const LightGuides guides_;
-    const SpectralLines lines_;
-    const double load_s_;
-    SeedPictures pictures_;
-    std::vector<double> sample_s_;
-};
-
-Estimate mean_of(const std::vector<double>& values) {
-    Estimate estimate;
-    for (const double value : values) estimate.value += value / double(values.size());
-    double square = 0.0;
-    for (const double value : values) square += (value - estimate.value) * (value - estimate.value);
-    estimate.standard_error = std::sqrt(square / double(values.size()) / double(values.size() - 1));
-    return estimate;
 }
 
 std::string render_command(const ParetoScene& scene, const ParetoVariant& variant) {
@@ -182,16 +80,18 @@ std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vec
     std::vector<std::unique_ptr<Subject>> subjects;
     const Subject* exact = nullptr;
     for (const ParetoVariant& variant : variants) {
-        subjects.push_back(std::make_unique<Subject>(scene, variant, builds.build(scene, variant), extent.width));
+        subjects.push_back(std::make_unique<Subject>(
+            scene.scene, scene_settings(variant, builds.build(scene, variant).file, extent.width), variant.spectral));
         if (variant.exact) exact = subjects.back().get();
     }
     const std::vector<std::uint32_t> pixels = exact->pixels();
+    const int samples = scene.varies ? extent.samples / 4 : extent.samples;  // the block takes as much longer
     for (int seed = 0; seed < extent.seeds; ++seed)
-        for (const auto& subject : subjects) subject->draw(pixels, extent.samples, 5000 + std::uint64_t(seed));
+        for (const auto& subject : subjects) subject->draw(pixels, samples, 5000 + std::uint64_t(seed));
     const Patches patches = patches_of(pixels, extent.width, patch_edge);
     std::vector<std::string> rows;
     for (std::size_t i = 0; i < variants.size(); ++i)
-        rows.push_back(row(scene, variants[i], builds.build(scene, variants[i]), *subjects[i], *exact, patches, extent.samples));
+        rows.push_back(row(scene, variants[i], builds.build(scene, variants[i]), *subjects[i], *exact, patches, samples));
     return rows;
 }
 
@@ -207,8 +107,10 @@ void bench_pareto(const std::filesystem::path& folder, bool quick, const std::ve
     const Stopwatch watch;
     for (const ParetoScene& scene : pareto_scenes(OPAL_EXAMPLES, OPAL_BENCH_BLOCK, quick))
         for (const std::vector<ParetoVariant>& variants : pareto_choices(scene, quick)) {
-            if (!only.empty() && std::find(only.begin(), only.end(), variants.front().choice) == only.end()) continue;
+            const auto wanted = [&](const std::string& name) { return std::find(only.begin(), only.end(), name) != only.end(); };
+            if (!only.empty() && !wanted(scene.name) && !wanted(variants.front().choice)) continue;
             for (const std::string& line : measure_choice(scene, variants, builds, extent)) csv << line;
+            csv.flush();
             fmt::print("{:6.0f} s  {}: {}\n", watch.seconds(), scene.name, variants.front().choice);
             std::fflush(stdout);
         }
