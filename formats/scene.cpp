@@ -62,6 +62,7 @@ RenderDescription read_render(TomlSection section) {
     render.samples = static_cast<int>(section.integer("samples", render.samples, 1, 1 << 24));
     render.noise = section.number("noise", render.noise, NumberRange::between(0.0, 1.0));
     render.max_bounces = static_cast<int>(section.integer("max_bounces", render.max_bounces, 1, 1'000'000));
+    render.roulette = section.boolean("roulette", render.roulette);
     render.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, INT64_MAX));
     render.sampler = enum_choice(section, "sampler", render.sampler, sampler_names);
     render.light_sampling = enum_choice(section, "light_sampling", render.light_sampling, light_sampling_names);
@@ -188,8 +189,8 @@ std::string scene_to_toml(const SceneDescription& scene) {
         "filter_radius_px = {}\n",
         render.width, render.height, render.samples, render.noise, render.max_bounces, render.seed,
         name(sampler_names, render.sampler), name(filter_names, render.filter), render.filter_radius_px);
-    text +=
-        fmt::format("light_sampling = \"{}\"\nguided = {}\n", name(light_sampling_names, render.light_sampling), render.guided);
+    text += fmt::format("roulette = {}\nlight_sampling = \"{}\"\nguided = {}\n", render.roulette,
+                        name(light_sampling_names, render.light_sampling), render.guided);
     if (render.crop)
         text += fmt::format("crop = [{}, {}, {}, {}]\n", render.crop->x0, render.crop->y0, render.crop->x1, render.crop->y1);
     text += fmt::format(

@@ -44,6 +44,7 @@ struct RenderDescription {
     int samples = 256;
     double noise = 0.0;  ///< relative error of luminance and chroma at which a place gets no more samples; 0: samples everywhere
     int max_bounces = 64;
+    bool roulette = true;  ///< paths that carry little end at random, those kept weigh more
     std::uint64_t seed = 1;
     SamplerKind sampler = SamplerKind::sobol;
     LightSamplingKind light_sampling = LightSamplingKind::both;

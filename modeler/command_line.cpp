@@ -14,6 +14,7 @@
 #include "formats/error.h"
 #include "formats/number_option.h"
 #include "formats/opal_asset.h"
+#include "formats/quality.h"
 #include "formats/recipe.h"
 #include "formats/report.h"
 #include "formats/scene.h"
@@ -33,6 +34,7 @@ struct BuildArguments {
     std::string report_file;
     std::string scene_file;
     double accepted_error_pixels = 1.0;
+    std::string quality;  ///< whose pixels are taken where none are given
     int threads = 0;
     bool for_blender = false;
 };
@@ -73,7 +75,9 @@ int run_build(const BuildArguments& arguments) {
     catch_interrupts();
     std::optional<SceneFit> scene_fit;
     if (!arguments.scene_file.empty())
-        scene_fit = SceneFit{read_scene(arguments.scene_file, {}), output, arguments.accepted_error_pixels};
+        scene_fit =
+            SceneFit{read_scene(arguments.scene_file, {}), output,
+                     arguments.quality.empty() ? arguments.accepted_error_pixels : quality_preset(arguments.quality).for_pixels};
     Recipe recipe = read_recipe(arguments.recipe_file, arguments.overrides);
     recipe.output.for_blender = recipe.output.for_blender || arguments.for_blender;
     BuiltOpal built = build_opal(recipe, say, scene_fit);
@@ -137,16 +141,25 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
     build->add_option("--set", arguments.overrides, "override a recipe key, e.g. grains.num_sites=1000; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
+    CLI::Option* const scene =
+        build
+            ->add_option(
+                "--for", arguments.scene_file,
+                "model no more than this scene's picture shows: voxels from its pixels' size at the gem, no fields or grids "
+                "without effect; the report says what was saved and which error is accepted")
+            ->type_name("SCENE.toml");
+    CLI::Option* const pixels =
+        build
+            ->add_option("--for-pixels", arguments.accepted_error_pixels,
+                         "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
+            ->check(number_between(0.01, 100.0))
+            ->type_name("PIXELS");
     build
-        ->add_option("--for", arguments.scene_file,
-                     "model no more than this scene's picture shows: voxels from its pixels' size at the gem, no fields or grids "
-                     "without effect; the report says what was saved and which error is accepted")
-        ->type_name("SCENE.toml");
-    build
-        ->add_option("--for-pixels", arguments.accepted_error_pixels,
-                     "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
-        ->check(number_between(0.01, 100.0))
-        ->type_name("PIXELS");
+        ->add_option("--quality", arguments.quality,
+                     "with --for: the pixels of a preset of opal-render: draft 10, preview 5, final 3, reference 1")
+        ->check(CLI::IsMember(quality_names()))
+        ->needs(scene)
+        ->excludes(pixels);
     build->add_option("--threads", arguments.threads, "threads to use (default: all); the result is the same for any number")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");

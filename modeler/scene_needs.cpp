@@ -92,7 +92,15 @@ double strongest_mie_per_mm(const Recipe& recipe) {
     return defects.sigma_s_550nm_per_mm * *std::max_element(defects.shape.value.begin(), defects.shape.value.end());
 }
 
-void drop_what_does_not_show(Recipe& recipe, double longest_path_mm, SceneNeeds& needs) {
+/// Whether opal-render finds the grains of such a file without voxels; see docs/formats.md, opal.grains.
+bool finds_grains_from_sites(const Recipe& recipe, const OpalDescription& settings) {
+    const bool described =
+        recipe.grains.tessellation == TessellationKind::additive || recipe.grains.tessellation == TessellationKind::voronoi;
+    return settings.grains != GrainsKind::voxels && described && !(recipe.grains.boundary_noise.amplitude_mm > 0.0) &&
+           recipe.output.has(OutputGrid::sites) && recipe.output.has(OutputGrid::shape);
+}
+
+void drop_what_does_not_show(Recipe& recipe, bool walks_cells, double longest_path_mm, SceneNeeds& needs) {
     BaseColorRecipe& color = recipe.base_color;
     // Rayleigh scattering is strongest at the short end of the visible range.
     const double rayleigh_at_360nm = std::pow(400.0 / 360.0, 4);
@@ -102,6 +110,11 @@ void drop_what_does_not_show(Recipe& recipe, double longest_path_mm, SceneNeeds&
     drop_field(color.sigma_s_rayleigh_field, "sigma_s_rayleigh_field", color.sigma_s_rayleigh_400nm_per_mm * rayleigh_at_360nm,
                longest_path_mm, needs);
     drop_field(color.sigma_s_mie_field, "sigma_s_mie_field", strongest_mie_per_mm(recipe), longest_path_mm, needs);
+    if (walks_cells && recipe.output.has(OutputGrid::grain_id)) {
+        std::erase(recipe.output.grids, OutputGrid::grain_id);
+        needs.dropped.push_back("grid grain_id: the grains are taken from the sites, exactly");
+        needs.exact_grains = true;
+    }
     if (recipe.output.has(OutputGrid::weight)) {
         std::erase(recipe.output.grids, OutputGrid::weight);
         needs.dropped.push_back("grid weight: nothing is rendered from it");
@@ -137,16 +150,21 @@ SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std
     const double n_eff =
         fcc_fill * recipe.crystal.n_sphere.at(sodium_d_nm) + (1.0 - fcc_fill) * recipe.crystal.n_medium.at(sodium_d_nm);
     needs.lens_magnification = n_eff < 2.0 ? n_eff / (2.0 - n_eff) : std::numeric_limits<double>::infinity();
-    drop_what_does_not_show(recipe, extents_mm.length(), needs);
+    drop_what_does_not_show(recipe, finds_grains_from_sites(recipe, scene.opal), extents_mm.length(), needs);
     return needs;
 }
 
 nlohmann::json scene_needs_to_json(const SceneNeeds& needs) {
     const double ratio = needs.recipe_voxel_size_mm / needs.voxel_size_mm;
-    return {{"pixel_footprint_mm", needs.pixel_footprint_mm},     {"voxel_size_mm", needs.voxel_size_mm},
-            {"recipe_voxel_size_mm", needs.recipe_voxel_size_mm}, {"voxels_over_recipe", ratio * ratio * ratio},
-            {"boundary_error_mm", needs.boundary_error_mm},       {"boundary_error_pixels", needs.boundary_error_pixels},
-            {"lens_magnification", needs.lens_magnification},     {"dropped", needs.dropped}};
+    return {{"pixel_footprint_mm", needs.pixel_footprint_mm},
+            {"voxel_size_mm", needs.voxel_size_mm},
+            {"recipe_voxel_size_mm", needs.recipe_voxel_size_mm},
+            {"voxels_over_recipe", ratio * ratio * ratio},
+            {"boundary_error_mm", needs.boundary_error_mm},
+            {"boundary_error_pixels", needs.boundary_error_pixels},
+            {"lens_magnification", needs.lens_magnification},
+            {"exact_grains", needs.exact_grains},
+            {"dropped", needs.dropped}};
 }
 
 std::string scene_needs_summary(const SceneNeeds& needs) {
@@ -155,10 +173,11 @@ std::string scene_needs_summary(const SceneNeeds& needs) {
     const double ratio = std::pow(needs.recipe_voxel_size_mm / needs.voxel_size_mm, 3);
     std::string text = fmt::format(
         "scene    a pixel spans {:.3g} mm of the gem: voxels of {:.3g} mm, {:.3g} times as many as the recipe's\n"
-        "         grain boundaries are off by {:.3g} mm at most, {:.2g} pixels (up to {:.2g} where the gem's own lens "
+        "         {} off by {:.3g} mm at most, {:.2g} pixels (up to {:.2g} where the gem's own lens "
         "magnifies)\n",
-        needs.pixel_footprint_mm, needs.voxel_size_mm, ratio, needs.boundary_error_mm, needs.boundary_error_pixels,
-        needs.boundary_error_pixels * needs.lens_magnification);
+        needs.pixel_footprint_mm, needs.voxel_size_mm, ratio,
+        needs.exact_grains ? "grains are exact; the surface is" : "grain boundaries are", needs.boundary_error_mm,
+        needs.boundary_error_pixels, needs.boundary_error_pixels * needs.lens_magnification);
     for (const std::string& what : needs.dropped) text += fmt::format("         left out: {}\n", what);
     return text;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "formats/error.h"
+#include "formats/quality.h"
 #include "renderer/pixel_window_flag.h"
 #include "renderer/render_command.h"
 
@@ -24,6 +25,7 @@ with --resume goes on from it. A scene with an [animation] gives OUT.0001.exr, O
 Examples:
   opal-render examples/precious_opal/scene.toml -o out/precious_opal.exr
   opal-render scene.toml -o draft.exr --spp 16 --set render.width=480 --set render.height=360
+  opal-render scene.toml -o look.exr --quality preview
   opal-render scene.toml -o lit_from_the_right.exr --set environment.rotate_deg=60 --time 60s)";
 
 /// "60", "60s", "5m", "2h" -> seconds; nothing -> 0.
@@ -47,6 +49,7 @@ std::filesystem::path RenderOptions::png() const {
 
 std::string RenderOptions::command() const {
     std::string text = "opal-render " + scene_file.string();
+    if (!quality.empty()) text += " --quality " + quality;
     for (const std::string& assignment : overrides) text += " --set " + assignment;
     if (samples > 0) text += fmt::format(" --spp {}", samples);
     if (!time.empty()) text += " --time " + time;
@@ -65,6 +68,9 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
     app.add_option("--set", options.overrides, "override a key of the scene: key.path=value (TOML); repeatable")
         ->take_all()
         ->allow_extra_args(false);
+    app.add_option("--quality", options.quality,
+                   "measured settings instead of the scene's: most samples, noise, bounces, odds; --set and the flags below win")
+        ->check(CLI::IsMember(quality_names()));
     app.add_option("--spp", options.samples, "samples per pixel, instead of render.samples")->check(CLI::Range(1, 1 << 24));
     app.add_option("--time", options.time, "stop after this long: seconds, or 90s, 5m, 2h");
     app.add_option("--threads", options.threads, "worker threads (default: all cores)")->check(CLI::Range(1, 4096));
@@ -104,7 +110,9 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
 }
 
 SceneDescription read_scene(const RenderOptions& options) {
-    std::vector<std::string> overrides = options.overrides;
+    std::vector<std::string> overrides;
+    if (!options.quality.empty()) overrides = quality_preset(options.quality).scene_overrides();
+    overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
     if (!options.crop.empty()) {
         const PixelWindow window = parse_pixel_window(options.crop);
         overrides.push_back(fmt::format("render.crop=[{}, {}, {}, {}]", window.x0, window.y0, window.x1, window.y1));

@@ -24,6 +24,7 @@ struct CheckpointOptions {
 struct RenderOptions {
     std::filesystem::path scene_file, output, stats_file;
     std::vector<std::string> overrides;
+    std::string quality;        ///< a preset between the scene's settings and `overrides`; empty: none
     int samples = 0;            ///< 0: the scene's
     double time_limit_s = 0.0;  ///< 0: none
     std::string time;           ///< as given

@@ -304,7 +304,7 @@ class PathTracer {
     /// Russian roulette by the largest contribution of any lane: the same for every choice of the hero, so the lanes' ratios
     /// stay.
     OPAL_HD bool survives_roulette(int bounce) {
-        if (bounce < 4) return true;
+        if (bounce < 4 || !scene_.roulette) return true;
         const Lanes<N> contribution = weights_.contribution();
         float largest = 0.0f;
         for (int i = 0; i < weights_.count; ++i) largest = max_of(largest, contribution.v[i]);

@@ -97,6 +97,7 @@ struct SceneView {
     NestedBodies cut_bodies;     ///< that some of its rays start in, see camera_bodies.h
     int width = 0, height = 0;
     int max_bounces = 64;
+    bool roulette = true;  ///< paths that carry little end at random
     int wavelengths = 4;  ///< 1 + companions
     uint64_t seed = 1;
     PathSampler sampler = PathSampler::stratified;

@@ -154,6 +154,7 @@ HostScene::HostScene(const SceneDescription& description, const std::array<doubl
     view_.width = render.width;
     view_.height = render.height;
     view_.max_bounces = render.max_bounces;
+    view_.roulette = render.roulette;
     view_.wavelengths = 1 + description.opal.companions;
     view_.seed = render.seed;
     view_.sampler = path_sampler(render.sampler);

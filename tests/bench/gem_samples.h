@@ -14,6 +14,10 @@ namespace opal {
 /// Luminance and two opponent colours, X and Z against Y over the white's.
 using Opponent = std::array<double, 3>;
 
+inline Opponent opponent_of(Xyz color) {
+    return {color.y, color.x / srgb_white.x - color.y, color.z / srgb_white.z - color.y};
+}
+
 template <int N>
 inline Opponent trace_opponent(const SceneView& view, const EmbreeScene& intersector, std::uint32_t pixel, std::uint32_t sample,
                                PathCounters& counters) {
@@ -26,7 +30,7 @@ inline Opponent trace_opponent(const SceneView& view, const EmbreeScene& interse
         sum = {sum.x + radiance * double(observer.x), sum.y + radiance * double(observer.y),
                sum.z + radiance * double(observer.z)};
     }
-    return {sum.y, sum.x / srgb_white.x - sum.y, sum.z / srgb_white.z - sum.y};
+    return opponent_of(sum);
 }
 
 /// The pixels whose centre shows a transparent body.

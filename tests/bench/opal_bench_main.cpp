@@ -18,6 +18,8 @@
 #include "media_bench.h"
 #include "media_checks_bench.h"
 #include "modeler_bench.h"
+#include "pareto/pareto_bench.h"
+#include "pareto/shots_bench.h"
 
 namespace {
 
@@ -27,6 +29,7 @@ struct BenchArguments {
     std::string scenes = "examples/media_checks";
     int samples = 16;
     int rays = 10'000'000;
+    std::vector<std::string> only;
 };
 
 int run_modeler(const BenchArguments& arguments) {
@@ -109,6 +112,15 @@ int run_bench(int argc, char** argv) {
         app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
     convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
+    CLI::App* const pareto = app.add_subcommand("pareto", "speed against accuracy: every choice on four opals (most of an hour)");
+    pareto->add_option("-o,--output", arguments.folder, "folder for pareto.csv")->required()->type_name("DIR");
+    pareto->add_flag("--quick", arguments.quick, "two opals, fewer values, coarser statistics (some minutes)");
+    pareto->add_option("--only", arguments.only, "a choice or a scene to measure, as the table names it; repeatable")
+        ->type_name("NAME");
+    CLI::App* const shots =
+        app.add_subcommand("shots", "one opal from afar, as a product, close up: the whole model against --for");
+    shots->add_option("-o,--output", arguments.folder, "folder for shots.csv")->required()->type_name("DIR");
+    shots->add_flag("--quick", arguments.quick, "a sixteenth of the samples");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -123,6 +135,14 @@ int run_bench(int argc, char** argv) {
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
     if (convergence->parsed()) {
         opal::bench_convergence(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (pareto->parsed()) {
+        opal::bench_pareto(arguments.folder, arguments.quick, arguments.only);
+        return 0;
+    }
+    if (shots->parsed()) {
+        opal::bench_shots(arguments.folder, arguments.quick);
         return 0;
     }
     if (bvh->parsed()) {

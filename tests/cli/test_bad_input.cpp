@@ -93,6 +93,8 @@ TEST_F(BadInput, ModelCommandLine) {
     expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels 0"), 2, "--for-pixels");
     expect_failure(build("good.toml", "--for " + at("scene.toml") + " --for-pixels nan"), 2,
                    "--for-pixels: nan is not a number from 0.01 to 100");
+    expect_failure(build("good.toml", "--quality final"), 2, "--quality requires --for");
+    expect_failure(build("good.toml", "--for " + at("scene.toml") + " --quality finest"), 2, "finest");
     expect_failure(opal_model + " info " + at("good.toml"), 2, "not a complete .vdb file");
     expect_failure(opal_model + " check " + at("nothing.vdb"), 2, "no such file");
 }

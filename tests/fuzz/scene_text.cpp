@@ -53,6 +53,7 @@ class SceneWriter {
         line("sampler = \"{}\"", random_.pick({"sobol", "stratified", "independent"}));
         line("filter = \"{}\"", random_.pick({"tent", "box", "gaussian", "blackman-harris"}));
         line("light_sampling = \"{}\"", random_.pick({"both", "connections", "scattering"}));
+        line("roulette = {}", random_.chance(0.8));
         guided_ = random_.chance(0.2);
         line("guided = {}", guided_);
         if (random_.chance(0.3)) line("filter_radius_px = {}", random_.pick({0.01, 0.5, 3.0, 16.0}));

@@ -14,12 +14,15 @@ namespace {
 
 const std::string recipe_text = "[shape]\nkind = \"box\"\nsize_mm = [8, 4, 2]\n[grains]\nvoxel_size_mm = 0.05\nnum_sites = 20\n";
 
+/// The picture takes the grains from voxels.
+const std::string voxels = "[opal]\ngrains = \"voxels\"\n";
+
 /// A camera 50 mm away on -Y, looking at the origin: a picture of 600 lines spans 2 z tan(15 degrees) at depth z.
-SceneDescription scene_with(const std::string& opal, const std::string& camera = "") {
+SceneDescription scene_with(const std::string& opal, const std::string& camera = "", const std::string& settings = "") {
     return parse_scene(
         "[render]\nwidth = 800\nheight = 600\n[camera]\nposition_mm = [0, -50, 0]\ntarget_mm = [0, 0, 0]\n"
         "vertical_fov_deg = 30\n" +
-            camera + "\n[[object]]\nkind = \"opal\"\nfile = \"gem.vdb\"\n" + opal,
+            camera + settings + "\n[[object]]\nkind = \"opal\"\nfile = \"gem.vdb\"\n" + opal,
         "s.toml", {});
 }
 
@@ -77,12 +80,28 @@ TEST(SceneNeeds, OnlyWhatCannotBeSeenIsDropped) {
     const std::string strong = "[base_color]\nsigma_a_per_mm = 0.1\nsigma_a_field = { kind = \"noise\", contrast = 0.5 }\n";
     const std::string grids = "[output]\ngrids = [\"grain_id\", \"shape\", \"weight\", \"sites\"]\nfor_blender = true\n";
     Recipe dropped = recipe_with(faint + grids), kept = recipe_with(strong);
-    EXPECT_EQ(fit(dropped, scene_with("")).dropped.size(), 3u);
+    EXPECT_EQ(fit(dropped, scene_with("", "", voxels)).dropped.size(), 3u);
     EXPECT_EQ(dropped.base_color.sigma_a_field.kind, FieldKind::constant);
     EXPECT_FALSE(dropped.output.has(OutputGrid::weight));
     EXPECT_FALSE(dropped.output.for_blender);
-    EXPECT_TRUE(fit(kept, scene_with("")).dropped.empty());
+    EXPECT_TRUE(fit(kept, scene_with("", "", voxels)).dropped.empty());
     EXPECT_EQ(kept.base_color.sigma_a_field.kind, FieldKind::noise);
+}
+
+TEST(SceneNeeds, LabelsAreLeftOutWhereTheSitesSayItAll) {
+    const auto keeps_labels = [](const std::string& recipe_more, const std::string& settings) {
+        Recipe recipe = recipe_with(recipe_more);
+        const SceneNeeds needs = fit(recipe, scene_with("", "", settings));
+        EXPECT_EQ(needs.exact_grains, !recipe.output.has(OutputGrid::grain_id));
+        EXPECT_EQ(needs.exact_grains, scene_needs_summary(needs).find("grains are exact") != std::string::npos);
+        return recipe.output.has(OutputGrid::grain_id);
+    };
+    EXPECT_FALSE(keeps_labels("", ""));
+    EXPECT_FALSE(keeps_labels("tessellation = \"voronoi\"\n", "[opal]\ngrains = \"cells\"\n"));
+    EXPECT_TRUE(keeps_labels("", voxels));
+    EXPECT_TRUE(keeps_labels("tessellation = \"manhattan\"\n", ""));
+    EXPECT_TRUE(keeps_labels("boundary_noise = { amplitude_mm = 0.1 }\n", ""));
+    EXPECT_TRUE(keeps_labels("[output]\ngrids = [\"grain_id\", \"shape\"]\n", ""));
 }
 
 TEST(SceneNeeds, FieldsAreJudgedWhereTheAbsorberIsStrongest) {
@@ -103,8 +122,8 @@ TEST(SceneNeeds, FieldsOfDefectsAreJudgedWhereTheyScatterMost) {
     const Recipe dense = recipe_of(0.1);
     const double per_mm = defect_scattering(dense.crystal, dense.base_color).sigma_s_550nm_per_mm;
     Recipe kept = recipe_of(0.1 * 1.0e-4 / per_mm), dropped = recipe_of(0.1 * 1.0e-5 / per_mm);
-    EXPECT_TRUE(fit(kept, scene_with("")).dropped.empty());
-    EXPECT_EQ(fit(dropped, scene_with("")).dropped.size(), 1u);
+    EXPECT_TRUE(fit(kept, scene_with("", "", voxels)).dropped.empty());
+    EXPECT_EQ(fit(dropped, scene_with("", "", voxels)).dropped.size(), 1u);
 }
 
 TEST(SceneNeeds, AFarGemKeepsFourVoxels) {
@@ -132,7 +151,8 @@ TEST(SceneNeeds, TheBuildUsesAndReportsThem) {
     const BuiltOpal built = build_opal(
         recipe, [](const std::string&) {}, SceneFit{scene_with(""), "gem.vdb", 4.0});
     ASSERT_TRUE(built.report.scene_needs.has_value());
-    EXPECT_NEAR(built.asset.grain_id->voxelSize().x(), 4.0 * 2.0 / std::sqrt(3.0) * footprint_at(48.0), 1.0e-12);
+    EXPECT_EQ(built.asset.grain_id, nullptr);
+    EXPECT_NEAR(built.asset.shape->voxelSize().x(), 4.0 * 2.0 / std::sqrt(3.0) * footprint_at(48.0), 1.0e-12);
     EXPECT_FALSE(built.output.for_blender);
     EXPECT_NE(built.asset.recipe_toml.find("voxel_size_mm = 0.19"), std::string::npos) << built.asset.recipe_toml;
 }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace opal {
+
+/// "Model no more than a scene needs", shown: the precious opal from afar, as a product and close up, once with the whole model
+/// (512 voxels along the longest side, labels and all) and once as `opal-model build --for SCENE` makes it for that picture.
+/// Writes folder/shots.csv: what building, keeping, loading and drawing cost, and how far apart the two pictures are.
+///
+/// Colours are those of patches of the gem, 16 pixels on a side (4 from afar), as the picture shows them (the scene's exposure),
+/// in CIELAB under D65. What the two models' pictures converge to is told apart from noise by eight seeds; beside it stands what
+/// an eye would compare: CIEDE2000 of two pictures, of both models, and of the whole model with other random numbers.
+void bench_shots(const std::filesystem::path& folder, bool quick);
+
+}  // namespace opal
