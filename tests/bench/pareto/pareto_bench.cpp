@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench_chart.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -55,12 +57,42 @@ constexpr const char* header =
     "scene,choice,variant,exact,processor_us_per_sample,processor_us_se,variance_per_sample,variance_se,cost_s,cost_se,"
     "squared_error,squared_error_se,mean_error,mean_error_se,memory_bytes,file_bytes,build_s,load_s,command\n";
 
+/// What errors of a scene's pixels are relative to: the default settings, drawn with seeds of their own.
+struct SceneLight {
+    std::vector<double> luminance;  ///< of every pixel of the picture, 0 beside the gem
+    double typical = 0.0;           ///< of those that have any
+
+    /// As one picture of these pixels.
+    SeedPictures at(const std::vector<std::uint32_t>& pixels) const {
+        SeedPictures pictures(1);
+        // The outline of a coarser model may hold a pixel more.
+        for (const std::uint32_t pixel : pixels)
+            pictures[0].push_back({luminance[pixel] > 0.0 ? luminance[pixel] : typical, 0.0, 0.0});
+        return pictures;
+    }
+};
+
+SceneLight scene_light(const ParetoScene& scene, OpalBuilds& builds, const Extent& extent) {
+    const ParetoVariant settings{"", "default", {}, {}};
+    Subject subject(scene.scene, scene_settings(settings, builds.build(scene, settings).file, extent.width),
+                    SpectralChoice::continuous);
+    const std::vector<std::uint32_t> pixels = subject.pixels();
+    for (int seed = 0; seed < extent.seeds; ++seed) subject.draw(pixels, extent.samples, 9000 + std::uint64_t(seed));
+    SceneLight light;
+    light.luminance.assign(std::size_t(extent.width * extent.width), 0.0);
+    for (const auto& picture : subject.pictures())
+        for (std::size_t p = 0; p < pixels.size(); ++p) light.luminance[pixels[p]] += picture[p][0] / extent.seeds;
+    for (const std::uint32_t pixel : pixels) light.typical += light.luminance[pixel] / double(pixels.size());
+    return light;
+}
+
 /// One line of the table. Cost: processor time of a million pixels whose luminance and chroma together are noisy by 10 %.
 std::string row(const ParetoScene& scene, const ParetoVariant& variant, const OpalBuild& opal, const Subject& subject,
-                const Subject& exact, const Patches& patches, int samples) {
+                const Subject& exact, const SeedPictures& light, const Patches& patches, int samples) {
     const SeedPictures exact_patches = patch_means(exact.pictures(), patches);
-    const Estimate bias = squared_bias(patch_means(subject.pictures(), patches), exact_patches, relative_weights(exact_patches));
-    const Estimate noise = seed_variance(subject.pictures(), relative_weights(exact.pictures()));
+    const Estimate bias =
+        squared_bias(patch_means(subject.pictures(), patches), exact_patches, relative_weights(patch_means(light, patches)));
+    const Estimate noise = seed_variance(subject.pictures(), relative_weights(light));
     const Estimate mean = relative_mean_error(subject.pictures(), exact.pictures());
     const Estimate sample_s = mean_of(subject.sample_s());
     constexpr double pixels = 1e6, squared_noise = 0.01;
@@ -76,7 +108,7 @@ std::string row(const ParetoScene& scene, const ParetoVariant& variant, const Op
 
 /// All values of one choice, seed by seed in turn, so that what disturbs the machine disturbs all alike.
 std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vector<ParetoVariant>& variants, OpalBuilds& builds,
-                                        const Extent& extent) {
+                                        const SceneLight& light, const Extent& extent) {
     std::vector<std::unique_ptr<Subject>> subjects;
     const Subject* exact = nullptr;
     for (const ParetoVariant& variant : variants) {
@@ -91,7 +123,8 @@ std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vec
     const Patches patches = patches_of(pixels, extent.width, patch_edge);
     std::vector<std::string> rows;
     for (std::size_t i = 0; i < variants.size(); ++i)
-        rows.push_back(row(scene, variants[i], builds.build(scene, variants[i]), *subjects[i], *exact, patches, samples));
+        rows.push_back(
+            row(scene, variants[i], builds.build(scene, variants[i]), *subjects[i], *exact, light.at(pixels), patches, samples));
     return rows;
 }
 
@@ -99,24 +132,30 @@ std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vec
 
 void bench_pareto(const std::filesystem::path& folder, bool quick, const std::vector<std::string>& only) {
     std::filesystem::create_directories(folder);
-    const Extent extent = quick ? Extent{20, 4, 48} : Extent{40, 8, 128};
+    const Extent extent = quick ? Extent{20, 4, 48} : Extent{40, 8, 96};
     AtomicFile file(folder / "pareto.csv");
     std::ofstream csv(file.temporary_path());
     csv << header;
     OpalBuilds builds(folder / "pareto_opals");
     const Stopwatch watch;
-    for (const ParetoScene& scene : pareto_scenes(OPAL_EXAMPLES, OPAL_BENCH_BLOCK, quick))
+    const auto wanted = [&](const std::string& name) {
+        return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
+    };
+    for (const ParetoScene& scene : pareto_scenes(OPAL_EXAMPLES, OPAL_BENCH_BLOCK, quick)) {
+        std::optional<SceneLight> light;
         for (const std::vector<ParetoVariant>& variants : pareto_choices(scene, quick)) {
-            const auto wanted = [&](const std::string& name) { return std::find(only.begin(), only.end(), name) != only.end(); };
-            if (!only.empty() && !wanted(scene.name) && !wanted(variants.front().choice)) continue;
-            for (const std::string& line : measure_choice(scene, variants, builds, extent)) csv << line;
+            if (!wanted(scene.name) && !wanted(variants.front().choice)) continue;
+            if (!light) light = scene_light(scene, builds, extent);
+            for (const std::string& line : measure_choice(scene, variants, builds, *light, extent)) csv << line;
             csv.flush();
             fmt::print("{:6.0f} s  {}: {}\n", watch.seconds(), scene.name, variants.front().choice);
             std::fflush(stdout);
         }
+    }
     csv.close();
     if (!csv) throw SystemError(fmt::format("{}: writing failed", (folder / "pareto.csv").string()));
     file.commit();
+    draw_chart("plot_pareto.py", folder / "pareto.csv");
 }
 
 }  // namespace opal

@@ -27,7 +27,8 @@ Patches patches_of(const std::vector<std::uint32_t>& pixels, int width, int edge
 SeedPictures patch_means(const SeedPictures& pictures, const Patches& patches);
 
 /// Weight of each pixel's squared error: 1 / (its squared luminance + a tenth of the mean of all), over the number of pixels:
-/// errors are relative, but where it is darker than a third of the whole.
+/// errors are relative, but where it is darker than a third of the whole. From seeds of their own: a picture that is weighted by
+/// its own noise seems quieter than others.
 std::vector<double> relative_weights(const SeedPictures& reference);
 
 /// Weighted mean over the pixels of the squared difference of what two pictures converge to, luminance and both chromas
