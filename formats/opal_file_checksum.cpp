@@ -57,14 +57,14 @@ void stamp_checksum(const std::filesystem::path& file) {
         throw SystemError(fmt::format("{}: writing failed: {}", file.string(), std::strerror(errno)));
 }
 
-bool checksum_fits(const std::filesystem::path& file) {
+Checksum look_at_checksum(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string head(uuid_begin + uuid_length, '\0');
     stream.read(head.data(), std::streamsize(head.size()));
-    if (!stream || head.compare(uuid_begin, std::strlen(uuid_start), uuid_start) != 0) return true;
+    if (!stream || head.compare(uuid_begin, std::strlen(uuid_start), uuid_start) != 0) return Checksum::none;
     stream.seekg(0);
     const StampedFile stamped = read_stamp(stream);
-    return stamped.uuid == stamped.checksum;
+    return stamped.uuid == stamped.checksum ? Checksum::fits : Checksum::differs;
 }
 
 }  // namespace opal

@@ -12,7 +12,9 @@ namespace opal {
 /// Puts the checksum of a finished file into it. Throws SystemError where the file cannot be read or written.
 void stamp_checksum(const std::filesystem::path& file);
 
-/// Whether a file is as opal-model wrote it, or carries no checksum. False: it is damaged or cut off.
-bool checksum_fits(const std::filesystem::path& file);
+enum class Checksum { none, fits, differs };
+
+/// Of a file: `none` where another program wrote it; `differs` where it is damaged or cut off.
+Checksum look_at_checksum(const std::filesystem::path& file);
 
 }  // namespace opal

@@ -92,10 +92,12 @@ openvdb::BBoxd box_of(const Cube& cube) {
 /// space, for neighbours among themselves.
 class CellByCell {
   public:
-    CellByCell(const std::vector<Site>& sites, const std::vector<std::int32_t>& visible, const Shape& shape, double spacing_mm)
+    CellByCell(const std::vector<Site>& sites, const std::vector<std::int32_t>& visible, const Shape& shape, double spacing_mm,
+               std::atomic<std::uint64_t>* cubes_looked_at)
         : sites_(sites),
           shape_(shape),
           spacing_mm_(spacing_mm),
+          cubes_looked_at_(cubes_looked_at),
           reach_mm_(cell_reach * spacing_mm * std::cbrt(static_cast<double>(sites.size()) / static_cast<double>(visible.size()))),
           space_(cube_around(shape.bounds_mm(), sites, visible, 0.0)),
           culling_(sites, box_of({space_.centre_mm, space_.size_mm + 4.0 * reach_mm_})),
@@ -175,7 +177,7 @@ class CellByCell {
         std::sort(work.rivals.begin(), work.rivals.end());
         const PairsOfSite wanted{index, work.undecided};
         PairSet known;
-        FaceSearch(culling_, shape_, spacing_mm_, wanted)
+        FaceSearch(culling_, shape_, spacing_mm_, wanted, cubes_looked_at_)
             .search(sites_[static_cast<std::size_t>(index)].position_mm, 2.0 * reach_mm_, work.rivals, known);
         NeighbourGraph pairs;
         known.append_to(pairs);
@@ -184,7 +186,7 @@ class CellByCell {
 
     void search_among_unbounded(const std::vector<std::int32_t>& visible) {
         const PairsOfMarked wanted{unbounded_, found_};
-        FaceSearch(culling_, shape_, spacing_mm_, wanted)
+        FaceSearch(culling_, shape_, spacing_mm_, wanted, cubes_looked_at_)
             .search_in_parallel(space_.centre_mm, space_.size_mm, false, visible,
                                 [this](const PairSet& known) { known.append_to(others_.local()); });
     }
@@ -215,6 +217,7 @@ class CellByCell {
     const std::vector<Site>& sites_;
     const Shape& shape_;
     double spacing_mm_;
+    std::atomic<std::uint64_t>* cubes_looked_at_;
     double reach_mm_;
     Cube space_;
     SiteCulling<AdditiveMetric> culling_;
@@ -226,11 +229,11 @@ class CellByCell {
 
 template <typename Metric>
 NeighbourGraph search_all_of_space(const std::vector<Site>& sites, const std::vector<std::int32_t>& visible, const Shape& shape,
-                                   double spacing_mm) {
+                                   double spacing_mm, std::atomic<std::uint64_t>* cubes_looked_at) {
     const Cube space = cube_around(shape.bounds_mm(), sites, {}, 0.0);
     const SiteCulling<Metric> culling(sites, box_of(space));
     tbb::enumerable_thread_specific<NeighbourGraph> found;
-    FaceSearch(culling, shape, spacing_mm, AllPairs())
+    FaceSearch(culling, shape, spacing_mm, AllPairs(), cubes_looked_at)
         .search_in_parallel(space.centre_mm, space.size_mm, false, visible,
                             [&](const PairSet& known) { known.append_to(found.local()); });
     throw_if_interrupted();
@@ -244,7 +247,7 @@ NeighbourGraph search_all_of_space(const std::vector<Site>& sites, const std::ve
 }  // namespace
 
 NeighbourGraph apollonius_graph(const std::vector<Site>& sites, const std::vector<char>& hidden, const Shape& shape,
-                                double spacing_mm, TessellationKind kind) {
+                                double spacing_mm, TessellationKind kind, std::atomic<std::uint64_t>* cubes_looked_at) {
     Candidates visible;
     for (std::size_t n = 0; n < sites.size(); ++n)
         if (hidden[n] == 0) visible.push_back(static_cast<std::int32_t>(n));
@@ -252,9 +255,9 @@ NeighbourGraph apollonius_graph(const std::vector<Site>& sites, const std::vecto
     return with_metric(kind, [&](auto metric) {
         using Metric = decltype(metric);
         if constexpr (std::is_same_v<Metric, AdditiveMetric>)
-            return CellByCell(sites, visible, shape, spacing_mm).finish(visible);
+            return CellByCell(sites, visible, shape, spacing_mm, cubes_looked_at).finish(visible);
         else
-            return search_all_of_space<Metric>(sites, visible, shape, spacing_mm);
+            return search_all_of_space<Metric>(sites, visible, shape, spacing_mm, cubes_looked_at);
     });
 }
 

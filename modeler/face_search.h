@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -46,8 +47,15 @@ class PairSet {
 template <typename Metric, typename Wanted>
 class FaceSearch {
   public:
-    FaceSearch(const SiteCulling<Metric>& culling, const Shape& shape, double spacing_mm, const Wanted& wanted)
-        : culling_(culling), shape_(shape), spacing_mm_(spacing_mm), tolerance_mm_(1.0e-9 * spacing_mm), wanted_(wanted) {}
+    /// `cubes_looked_at`: counts them; may be null.
+    FaceSearch(const SiteCulling<Metric>& culling, const Shape& shape, double spacing_mm, const Wanted& wanted,
+               std::atomic<std::uint64_t>* cubes_looked_at)
+        : culling_(culling),
+          shape_(shape),
+          spacing_mm_(spacing_mm),
+          tolerance_mm_(1.0e-9 * spacing_mm),
+          wanted_(wanted),
+          cubes_looked_at_(cubes_looked_at) {}
 
     /// Searches the cube; `from` holds all sites that may own a point of it. Hands a PairSet per task to `sink`, which several
     /// threads may call at once.
@@ -56,6 +64,7 @@ class FaceSearch {
                             const Sink& sink) const {
         if (interrupt_requested()) return;
         Level level;
+        count_cubes(1);
         if (!add_block(centre_mm, size_mm, inside, from, level)) return;
         if (size_mm <= task_size * spacing_mm_) {
             PairSet known;
@@ -72,6 +81,7 @@ class FaceSearch {
     /// The same in this thread alone, for a small cube.
     void search(const openvdb::Vec3d& centre_mm, double size_mm, std::span<const std::int32_t> from, PairSet& known) const {
         Level level;
+        count_cubes(1);
         if (add_block(centre_mm, size_mm, false, from, level)) search(std::move(level), size_mm, known);
     }
 
@@ -107,12 +117,17 @@ class FaceSearch {
                                           (octant & 1) ? step_mm : -step_mm);
     }
 
+    void count_cubes(std::uint64_t number) const {
+        if (cubes_looked_at_) cubes_looked_at_->fetch_add(number, std::memory_order_relaxed);
+    }
+
     /// False where no face that is asked for can be: out of the shape, or of other cells.
     bool add_block(const openvdb::Vec3d& centre_mm, double size_mm, bool inside, std::span<const std::int32_t> from,
                    Level& level) const {
         const double half_diagonal_mm = 0.5 * std::sqrt(3.0) * size_mm;
         const std::size_t first = level.candidates.size();
         culling_.shrink(from, centre_mm, half_diagonal_mm, level.candidates);
+        culling_.compare_with_nearest(first, centre_mm, half_diagonal_mm, level.candidates);
         const std::size_t count = level.candidates.size() - first;
         bool needed = wanted_.any(std::span<const std::int32_t>(level.candidates.data() + first, count));
         if (needed && !inside) {
@@ -130,14 +145,17 @@ class FaceSearch {
     void search(Level level, double size_mm, PairSet& known) const {
         while (!level.blocks.empty() && !interrupt_requested()) {
             Level next;
+            std::uint64_t divided = 0;
             const bool divisible = size_mm > smallest_face_search * spacing_mm_;
             for (const Block& block : level.blocks) {
                 const std::span<const std::int32_t> candidates = level.candidates_of(block);
                 const bool open = size_mm > largest_tested_size * spacing_mm_ || test_pairs(block, size_mm, candidates, known);
                 if (!open || !divisible) continue;
+                ++divided;
                 for (int octant = 0; octant < 8; ++octant)
                     add_block(child_centre(block.centre_mm, size_mm, octant), 0.5 * size_mm, block.inside, candidates, next);
             }
+            count_cubes(8 * divided);
             level = std::move(next);
             size_mm *= 0.5;
         }
@@ -214,6 +232,7 @@ class FaceSearch {
     double spacing_mm_;
     double tolerance_mm_;
     const Wanted& wanted_;
+    std::atomic<std::uint64_t>* cubes_looked_at_;
 };
 
 }  // namespace opal

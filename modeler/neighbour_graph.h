@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <compare>
 #include <cstdint>
 #include <vector>
@@ -32,9 +33,11 @@ inline constexpr double smallest_face_search = 1.0 / 128.0;
 /// one is farther. So no pair is ever wrong. Every pair is found whose face holds, inside the shape, a disk of radius twice
 /// `smallest_face_search` spacings; smaller faces may be missed. Cells of additive weights are settled one by one where possible
 /// (RadialCell); what that leaves, and the other metrics, by dividing space (FaceSearch). The result does not depend on threads.
-/// Throws Interrupted on Ctrl-C.
+/// Throws Interrupted on Ctrl-C. `cubes_looked_at`, where given, is raised by the cubes that the division of space came to: what
+/// the search costs, on any machine.
 NeighbourGraph apollonius_graph(const std::vector<Site>& sites, const std::vector<char>& hidden, const Shape& shape,
-                                double spacing_mm, TessellationKind kind = TessellationKind::additive);
+                                double spacing_mm, TessellationKind kind = TessellationKind::additive,
+                                std::atomic<std::uint64_t>* cubes_looked_at = nullptr);
 
 /// Edges of the Delaunay tetrahedrization of the visible sites, weights and shape disregarded (CGAL, exact predicates). Includes
 /// the long edges along the sites' convex hull. Sites on a line or in a plane are joined as their Delaunay triangulation there

@@ -47,6 +47,30 @@ void SiteCulling<Metric>::shrink(std::span<const std::int32_t> from, const openv
         if (delta_mm[n] <= limit_mm) kept.push_back(from[n]);
 }
 
+template <typename Metric>
+void SiteCulling<Metric>::compare_with_nearest(std::size_t first, const openvdb::Vec3d& centre_mm, double radius_mm,
+                                               Candidates& kept) const {
+    if (kept.size() - first < 2) return;
+    const auto site = [this](std::int32_t index) -> const Site& { return sites_[static_cast<std::size_t>(index)]; };
+    std::int32_t nearest = kept[first];
+    double least_mm = std::numeric_limits<double>::infinity();
+    for (std::size_t n = first; n < kept.size(); ++n) {
+        const double delta_mm = Metric::delta_mm(centre_mm, site(kept[n]));
+        if (delta_mm < least_mm) {
+            least_mm = delta_mm;
+            nearest = kept[n];
+        }
+    }
+    const double slack_mm = rounding_slack_mm_ * Metric::slope(site(nearest));
+    const auto never_nearer = [&](std::int32_t index) {
+        if (index == nearest) return false;
+        const double slope = Metric::difference_slope(site(index), site(nearest), centre_mm, radius_mm);
+        const double behind_mm = Metric::delta_mm(centre_mm, site(index)) - least_mm;
+        return behind_mm > slope * radius_mm + slack_mm + rounding_slack_mm_ * Metric::slope(site(index));
+    };
+    kept.erase(std::remove_if(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), never_nearer), kept.end());
+}
+
 template class SiteCulling<TessellationMetric<TessellationKind::additive>>;
 template class SiteCulling<TessellationMetric<TessellationKind::multiplicative>>;
 template class SiteCulling<TessellationMetric<TessellationKind::manhattan>>;

@@ -27,6 +27,11 @@ class SiteCulling {
     /// Appends the survivors of `from` to `kept`, in their order. The span may point into `kept` only if that has room for all.
     void shrink(std::span<const std::int32_t> from, const openvdb::Vec3d& centre_mm, double radius_mm, Candidates& kept) const;
 
+    /// Drops further candidates, `first` and those after it, that cannot own a point of the ball: by how much farther than the
+    /// nearest they are at its centre, and how fast that can change. Pays where the ball is small against its distance from sites
+    /// that are close together, whose distances change almost alike.
+    void compare_with_nearest(std::size_t first, const openvdb::Vec3d& centre_mm, double radius_mm, Candidates& kept) const;
+
     const std::vector<Site>& sites() const { return sites_; }
 
   private:

@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "formats/opal_asset.h"
@@ -58,6 +59,28 @@ struct TessellationMetric {
         if constexpr (kind == TessellationKind::multiplicative) return static_cast<double>(site.weight_mm);
         if constexpr (kind == TessellationKind::manhattan) return std::sqrt(3.0);
         return 1.0;
+    }
+
+    /// Largest change of delta_a - delta_b per Euclidean distance within a ball: far from two sites that are near each other both
+    /// distances change almost alike.
+    static double difference_slope(const Site& a, const Site& b, const openvdb::Vec3d& centre_mm, double radius_mm) {
+        const openvdb::Vec3d& from_a = a.position_mm;
+        const openvdb::Vec3d& from_b = b.position_mm;
+        if constexpr (kind == TessellationKind::manhattan) {
+            // Along an axis the difference changes, by 2, between the sites alone.
+            int axes = 0;
+            for (int axis = 0; axis < 3; ++axis)
+                axes += std::min(from_a[axis], from_b[axis]) <= centre_mm[axis] + radius_mm &&
+                                std::max(from_a[axis], from_b[axis]) >= centre_mm[axis] - radius_mm
+                            ? 1
+                            : 0;
+            return 2.0 * std::sqrt(static_cast<double>(axes));
+        }
+        // Unit vectors along two vectors differ by at most 2 |v - w| / (|v| + |w|) (Dunkl & Williams 1964).
+        const double distances_mm = (centre_mm - from_a).length() + (centre_mm - from_b).length() - 2.0 * radius_mm;
+        const double apart_mm = (from_a - from_b).length();
+        const double turn = apart_mm < distances_mm ? 2.0 * apart_mm / distances_mm : 2.0;
+        return std::min(slope(a), slope(b)) * turn + std::abs(slope(a) - slope(b));
     }
 
     /// Whether `other`, `offset_mm` away, is at least as near as `site` wherever `site` could own a point; where both own the

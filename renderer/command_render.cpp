@@ -13,7 +13,7 @@
 #include "formats_generated/version.h"
 #include "renderer/checkpoint_keeper.h"
 #include "renderer/cpu/aovs.h"
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 #include "renderer/device_choice.h"
 #include "renderer/host/development.h"
 #include "renderer/host/film_noise.h"
@@ -133,7 +133,7 @@ StillResult render_still(const RenderOptions& options, const SceneDescription& s
     {
         const std::unique_ptr<LiveView> live = live_view(options, film);
         Progress progress("rendering");
-        outcome = render_cpu(
+        outcome = render_picture(
             host, intersector, {int(range.end), options.time_limit_s, scene.render.noise}, film,
             [&](const RenderProgress& p) { progress.update(p.fraction, [&] { return progress_note(p, film); }); },
             device_maker(device, host.meshes()));

@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 
 namespace opal {
 
 /// What draws the samples, and why.
 struct DeviceChoice {
     bool cuda = false;
-    std::string reason;  ///< for people, of the processor: "this build has no CUDA backend"
+    std::string reason;  ///< for people
 };
 
 /// `asked`: auto, cpu or cuda; auto is the processor so far. Throws InputError where cuda is asked for and cannot be had.

@@ -50,6 +50,12 @@ nlohmann::json checkpoint_report(const CheckpointCounts& counts) {
     return report;
 }
 
+/// Null where no device with a clock of its own drew.
+nlohmann::json device_seconds_report(const RenderOutcome& outcome) {
+    if (!outcome.device_seconds) return nullptr;
+    return {{"trace", outcome.device_seconds->trace}, {"add", outcome.device_seconds->add}};
+}
+
 nlohmann::json grains_report(const HostScene& host) {
     nlohmann::json opals = nlohmann::json::array();
     for (const auto& opal : host.opals())
@@ -76,6 +82,8 @@ nlohmann::json render_report(const SceneDescription& scene, const HostScene& hos
             {"threads", threads},
             {"device", device.cuda ? "cuda" : "cpu"},
             {"device_reason", device.reason},
+            {"device_names", outcome.devices},
+            {"device_seconds", device_seconds_report(outcome)},
             {"seed", scene.render.seed},
             {"interrupted", outcome.interrupted},
             {"counts",

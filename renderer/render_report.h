@@ -5,7 +5,7 @@
 
 #include "formats/scene.h"
 #include "renderer/checkpoint_keeper.h"
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 #include "renderer/device_choice.h"
 
 namespace opal {
@@ -20,7 +20,6 @@ struct StageSeconds {
 
 /// What `--stats` writes: seconds per stage, peak memory, counts, energy per wavelength, versions, the resolved scene.
 nlohmann::json render_report(const SceneDescription& scene, const HostScene& host, const RenderOutcome& outcome, const Film& film,
-                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads,
-                             const DeviceChoice& device);
+                             const CheckpointKeeper& keeper, const StageSeconds& stages, int threads, const DeviceChoice& device);
 
 }  // namespace opal

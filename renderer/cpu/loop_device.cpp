@@ -3,9 +3,14 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
+#include "renderer/host/device_room.h"
+
 namespace opal {
 
-LoopDevice::LoopDevice(const SceneView& scene, const Bvh& bvh) {
+LoopDevice::LoopDevice(const SceneView& scene, const Bvh& bvh, const Film& film, std::size_t memory_bytes) {
+    require_room(device_memory(scene, bvh, film), memory_bytes, name);
     scene_ = copied_scene(scene, arrays_);
     const BvhNode* nodes = arrays_.copy(bvh.nodes().data(), bvh.nodes().size(), "rays");
     const BvhPrimitive* primitives = arrays_.copy(bvh.primitives().data(), bvh.primitives().size(), "rays");
@@ -13,8 +18,15 @@ LoopDevice::LoopDevice(const SceneView& scene, const Bvh& bvh) {
 }
 
 void LoopDevice::advance(Film& film, std::span<const int> blocks, std::uint32_t samples) {
-    if (scene_.wavelengths == 1) return launch<1>(film, blocks, samples);
-    return scene_.wavelengths <= 4 ? launch<4>(film, blocks, samples) : launch<8>(film, blocks, samples);
+    if (scene_.wavelengths == 1) return advance_in_parts<1>(film, blocks, samples);
+    return scene_.wavelengths <= 4 ? advance_in_parts<4>(film, blocks, samples) : advance_in_parts<8>(film, blocks, samples);
+}
+
+template <int N>
+void LoopDevice::advance_in_parts(Film& film, std::span<const int> blocks, std::uint32_t samples) {
+    const std::size_t at_once = blocks_at_once<N>(samples);
+    for (std::size_t first = 0; first < blocks.size(); first += at_once)
+        launch<N>(film, blocks.subspan(first, std::min(at_once, blocks.size() - first)), samples);
 }
 
 template <int N>

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/cuda/cuda_device.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "renderer/cuda/device_memory.h"
 #include "renderer/cuda/path_kernels.h"
-#include "renderer/host/scene_copy.h"
+#include "renderer/host/device_room.h"
+#include "renderer/host/several_devices.h"
 
 namespace opal {
 namespace {
 
 static_assert(num_total_parts <= block_pixels, "a thread for each part of the totals");
-
-/// Records of paths that are kept on the device at most.
-constexpr std::size_t record_bytes = std::size_t(1) << 30;
 
 /// Puts a scene's arrays on the device.
 class DeviceCopier : public ArrayCopier {
@@ -27,34 +23,29 @@ class DeviceCopier : public ArrayCopier {
     std::vector<DeviceArray<std::byte>> arrays_;
 };
 
-/// "1.25 GB"
-std::string bytes_text(std::size_t bytes) {
-    return fmt::format("{:.3g} {}", double(bytes) / (bytes < 1000000000 ? 1.0e6 : 1.0e9), bytes < 1000000000 ? "MB" : "GB");
+std::size_t free_bytes() {
+    std::size_t free = 0, all = 0;
+    check_cuda(cudaMemGetInfo(&free, &all), "cudaMemGetInfo");
+    return free;
 }
 
-/// Throws SystemError where the device lacks the memory for a scene.
-void require_room(const SceneView& scene, const Bvh& bvh) {
-    SceneMemory memory = scene_memory(scene);
-    memory.items.push_back(
-        {"tree of rays", bvh.nodes().size() * sizeof(BvhNode) + bvh.primitives().size() * sizeof(BvhPrimitive)});
-    memory.items.push_back({"paths under way", record_bytes});
-    std::size_t free_bytes = 0, all_bytes = 0;
-    check_cuda(cudaMemGetInfo(&free_bytes, &all_bytes), "cudaMemGetInfo");
-    if (memory.total_bytes() <= free_bytes) return;
-    std::string needs;
-    for (const SceneMemory::Item& item : memory.items)
-        needs += fmt::format("{}{} {}", needs.empty() ? "" : ", ", item.what, bytes_text(item.bytes));
-    throw SystemError(fmt::format("the scene needs {} of the device's memory, of which {} are free: {}",
-                                  bytes_text(memory.total_bytes()), bytes_text(free_bytes), needs));
+std::string name_of(int device) {
+    cudaDeviceProp properties;
+    check_cuda(cudaGetDeviceProperties(&properties, device), "cudaGetDeviceProperties");
+    return properties.name;
+}
+
+/// Calls of CUDA that follow in this thread are about this device.
+int selected(int device) {
+    check_cuda(cudaSetDevice(device), "cudaSetDevice");
+    return device;
 }
 
 class CudaDevice : public PathDevice {
   public:
-    CudaDevice(const SceneView& scene, const Bvh& bvh) : has_pieces_(bvh.has_pieces()) {
-        cudaDeviceProp properties;
-        check_cuda(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
-        name_ = properties.name;
-        require_room(scene, bvh);
+    CudaDevice(int device, const SceneView& scene, const Bvh& bvh, const Film& film)
+        : device_(selected(device)), name_(name_of(device)), has_pieces_(bvh.has_pieces()) {
+        require_room(device_memory(scene, bvh, film), free_bytes(), name_);
         const SceneView copy = copied_scene(scene, arrays_);
         wavelengths_ = copy.wavelengths;
         scene_.upload({&copy, 1});
@@ -66,9 +57,11 @@ class CudaDevice : public PathDevice {
                       copy.meshes};
     }
 
-    std::string name() const override { return name_; }
+    std::vector<std::string> names() const override { return {name_}; }
+    std::optional<KernelSeconds> kernel_seconds() const override { return seconds_; }
 
     void advance(Film& film, std::span<const int> blocks, std::uint32_t samples) override {
+        selected(device_);
         if (wavelengths_ <= 4 && !has_pieces_) return advance_in_parts<4>(film, blocks, samples);
         advance_in_parts<8>(film, blocks, samples);
     }
@@ -77,8 +70,7 @@ class CudaDevice : public PathDevice {
     /// As many blocks at once as their records have room.
     template <int N>
     void advance_in_parts(Film& film, std::span<const int> blocks, std::uint32_t samples) {
-        const std::size_t of_block = std::size_t(block_pixels) * samples * sizeof(PathRecord<N>);
-        const std::size_t at_once = std::max<std::size_t>(1, record_bytes / of_block);
+        const std::size_t at_once = blocks_at_once<N>(samples);
         for (std::size_t first = 0; first < blocks.size(); first += at_once)
             launch<N>(film, blocks.subspan(first, std::min(at_once, blocks.size() - first)), samples);
     }
@@ -106,13 +98,18 @@ class CudaDevice : public PathDevice {
         work.records = reinterpret_cast<PathRecord<N>*>(records_.data());
         work.totals = totals_.data();
         work.counters = counters_.data();
+        begin_.record();
         cudaError_t launched;
         if constexpr (N == 8)
-            launched = has_pieces_ ? launch_paths(work, with_pieces_) : launch_paths(work, triangles_);
+            launched =
+                has_pieces_ ? launch_paths(work, with_pieces_, traced_.get()) : launch_paths(work, triangles_, traced_.get());
         else
-            launched = launch_paths(work, triangles_);
+            launched = launch_paths(work, triangles_, traced_.get());
         check_cuda(launched, "launch of the paths' kernels");
+        end_.record();
         check_cuda(cudaDeviceSynchronize(), "the paths' kernels");
+        seconds_.trace += traced_.seconds_since(begin_);
+        seconds_.add += end_.seconds_since(traced_);
         totals_.download(totals);
         counters_.download(counters);
         fetch(film, blocks, places, totals, counters, samples);
@@ -141,6 +138,7 @@ class CudaDevice : public PathDevice {
         }
     }
 
+    int device_;  ///< before all that lies on it
     std::string name_;
     bool has_pieces_;
     int wavelengths_ = 1;
@@ -156,25 +154,31 @@ class CudaDevice : public PathDevice {
     DeviceArray<double> sums_;
     DeviceArray<std::uint32_t> counts_;
     DeviceArray<std::byte> records_;
+    DeviceEvent begin_, traced_, end_;
+    KernelSeconds seconds_;
 };
 
 }  // namespace
 
-CudaPresence find_cuda_device() {
+CudaPresence find_cuda_devices() {
     int devices = 0;
     const cudaError_t error = cudaGetDeviceCount(&devices);
     if (error != cudaSuccess) {
         cudaGetLastError();
-        return {"", cudaGetErrorString(error)};
+        return {{}, cudaGetErrorString(error)};
     }
-    if (devices == 0) return {"", "there is none"};
-    cudaDeviceProp properties;
-    check_cuda(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
-    return {properties.name, ""};
+    if (devices == 0) return {{}, "there is none"};
+    CudaPresence presence;
+    for (int device = 0; device < devices; ++device) presence.names.push_back(name_of(device));
+    return presence;
 }
 
-std::unique_ptr<PathDevice> make_cuda_device(const SceneView& scene, const Bvh& bvh) {
-    return std::make_unique<CudaDevice>(scene, bvh);
+std::unique_ptr<PathDevice> make_cuda_device(const SceneView& scene, const Bvh& bvh, const Film& film) {
+    std::vector<std::unique_ptr<PathDevice>> devices;
+    for (int device = 0; device < int(find_cuda_devices().names.size()); ++device)
+        devices.push_back(std::make_unique<CudaDevice>(device, scene, bvh, film));
+    if (devices.size() == 1) return std::move(devices.front());
+    return std::make_unique<SeveralDevices>(std::move(devices));
 }
 
 }  // namespace opal

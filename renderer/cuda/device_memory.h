@@ -9,7 +9,7 @@
 
 #include "formats/error.h"
 
-/// Memory of a CUDA device, and its errors as exceptions.
+/// Memory and moments of a CUDA device, and its errors as exceptions.
 namespace opal {
 
 /// Throws SystemError, naming the call, where one failed.
@@ -59,6 +59,28 @@ class DeviceArray {
   private:
     T* data_ = nullptr;
     std::size_t capacity_ = 0;
+};
+
+/// A moment in the work of the device that was current when it was made.
+class DeviceEvent {
+  public:
+    DeviceEvent() { check_cuda(cudaEventCreate(&event_), "cudaEventCreate"); }
+    ~DeviceEvent() { cudaEventDestroy(event_); }
+    DeviceEvent(const DeviceEvent&) = delete;
+    DeviceEvent& operator=(const DeviceEvent&) = delete;
+
+    cudaEvent_t get() const { return event_; }
+    /// After all that was queued before.
+    void record() { check_cuda(cudaEventRecord(event_), "cudaEventRecord"); }
+    /// From another moment to this one; both are over.
+    double seconds_since(const DeviceEvent& earlier) const {
+        float milliseconds = 0.0f;
+        check_cuda(cudaEventElapsedTime(&milliseconds, earlier.event_, event_), "cudaEventElapsedTime");
+        return 1.0e-3 * double(milliseconds);
+    }
+
+  private:
+    cudaEvent_t event_ = nullptr;
 };
 
 }  // namespace opal

@@ -40,10 +40,11 @@ __global__ void __launch_bounds__(block_pixels) add_kernel(KernelWork<N> work) {
 }
 
 template <int N, class Intersector>
-cudaError_t queue_kernels(const KernelWork<N>& work, const Intersector& intersector) {
+cudaError_t queue_kernels(const KernelWork<N>& work, const Intersector& intersector, cudaEvent_t traced) {
     const dim3 blocks(work.launch.num_blocks, (work.launch.samples + samples_per_thread - 1) / samples_per_thread);
     trace_kernel<N, Intersector><<<blocks, block_pixels>>>(work, intersector);
     if (const cudaError_t error = cudaGetLastError(); error != cudaSuccess) return error;
+    if (const cudaError_t error = cudaEventRecord(traced); error != cudaSuccess) return error;
     add_kernel<N><<<work.launch.num_blocks, block_pixels>>>(work);
     return cudaGetLastError();
 }

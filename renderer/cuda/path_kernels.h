@@ -18,10 +18,10 @@ struct KernelWork {
     PathCounters* counters = nullptr;  ///< of each block, added to
 };
 
-/// Queues tracing and adding up. Fewer wavelengths than lanes may be in use.
-cudaError_t launch_paths(const KernelWork<4>& work, const BvhView<false>& triangles);
-cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<false>& triangles);
+/// Queues tracing, the event, and adding up, on the current device. Fewer wavelengths than lanes may be in use.
+cudaError_t launch_paths(const KernelWork<4>& work, const BvhView<false>& triangles, cudaEvent_t traced);
+cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<false>& triangles, cudaEvent_t traced);
 /// Where some of the surfaces are exact patches: threads that need ten times the memory.
-cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<true>& with_pieces);
+cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<true>& with_pieces, cudaEvent_t traced);
 
 }  // namespace opal

@@ -3,8 +3,8 @@
 
 namespace opal {
 
-cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<false>& triangles) {
-    return queue_kernels(work, triangles);
+cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<false>& triangles, cudaEvent_t traced) {
+    return queue_kernels(work, triangles, traced);
 }
 
 }  // namespace opal

@@ -3,8 +3,8 @@
 
 namespace opal {
 
-cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<true>& with_pieces) {
-    return queue_kernels(work, with_pieces);
+cudaError_t launch_paths(const KernelWork<8>& work, const BvhView<true>& with_pieces, cudaEvent_t traced) {
+    return queue_kernels(work, with_pieces, traced);
 }
 
 }  // namespace opal

@@ -22,6 +22,16 @@ FilmColors colors_for(Xyz white) {
     return colors;
 }
 
+/// As add_to_pixel does with the last sample of a group.
+void end_group(double* sums) {
+    for (int c = 0; c < 3; ++c) {
+        double& group = sums[group_sum_offset + c];
+        const double mean = group / noise_group;
+        sums[group_square_offset + c] += mean * mean;
+        group = 0.0;
+    }
+}
+
 }  // namespace
 
 double bin_centre_nm(int bin) {
@@ -88,6 +98,32 @@ FilmSumsView Film::sums_view() {
 void Film::add(const SpectrumTables& tables, std::uint32_t pixel, const FilmSample& sample, SpectrumTotals& totals) {
     add_to_pixel(sums_view(), tables, pixel, sample);
     totals.add(colors_, tables, sample);
+}
+
+std::unique_ptr<Film> Film::make_share() const {
+    auto share = std::make_unique<Film>(window_, full_width_, full_height_, spectral_);
+    share->colors_ = colors_;
+    return share;
+}
+
+void Film::take_share(Film& share, int index) {
+    const PixelWindow pixels = block_window(index);
+    for (int y = pixels.y0; y < pixels.y1; ++y)
+        for (int x = pixels.x0; x < pixels.x1; ++x) {
+            const auto pixel = std::uint32_t(y * width() + x);
+            const std::span<double> to = sums(pixel), from = share.sums(pixel);
+            for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+            std::fill(from.begin(), from.end(), 0.0);
+            counts_[pixel] += share.counts_[pixel];
+            share.counts_[pixel] = 0;
+            if ((first_sample_ + counts_[pixel]) % noise_group == 0) end_group(to.data());
+        }
+    FilmBlock &block = blocks_[std::size_t(index)], &of_share = share.blocks_[std::size_t(index)];
+    block.totals.add(of_share.totals);
+    block.counters.add(of_share.counters);
+    block.end_sample = of_share.end_sample;
+    of_share.totals = {};
+    of_share.counters = {};
 }
 
 std::uint64_t Film::total_samples() const {

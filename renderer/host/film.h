@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -93,6 +94,12 @@ class Film {
     }
     std::span<double> sums(std::uint32_t pixel) { return {sums_.data() + first_sum(pixel), std::size_t(sums_per_pixel_)}; }
     void set_samples(std::uint32_t pixel, std::uint32_t count) { counts_[pixel] = count; }
+
+    /// A film for shares of this one's samples: nothing in it, spectra and colours alike.
+    std::unique_ptr<Film> make_share() const;
+    /// Adds what `share`, made by make_share, holds of a block: its next samples, fewer than noise_group and all of one group.
+    /// Clears them there. The caller holds the block's lock.
+    void take_share(Film& share, int block);
 
     /// Luminance below which noise is no longer relative to a pixel's own; below 0: not known yet.
     double noise_floor() const { return noise_floor_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,13 +11,21 @@
 
 namespace opal {
 
+/// Time that a device spent on kinds of work, by its own clock.
+struct KernelSeconds {
+    double trace = 0.0;  ///< following paths
+    double add = 0.0;    ///< adding what they found to the film
+};
+
 /// A machine that draws samples in place of the processor's cores.
 class PathDevice {
   public:
     virtual ~PathDevice() = default;
 
-    /// As people know it.
-    virtual std::string name() const = 0;
+    /// As people know it; several where several work together.
+    virtual std::vector<std::string> names() const = 0;
+    /// Since it was made; nothing where the device has no clock of its own.
+    virtual std::optional<KernelSeconds> kernel_seconds() const = 0;
     /// Draws the next `samples` samples of every pixel of some of the film's blocks, all at the same sample, and adds them to the
     /// film and to the blocks' totals and counters. Locks the blocks while it writes to them. Throws SystemError.
     virtual void advance(Film& film, std::span<const int> blocks, std::uint32_t samples) = 0;

@@ -15,7 +15,7 @@
 #include "formats/illuminant.h"
 #include "formats/image.h"
 #include "formats/units.h"
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 
 namespace opal {
 namespace {
@@ -64,7 +64,7 @@ Image rendered(SceneDescription scene, std::uint64_t seed, int samples, double& 
     const HostScene host(scene, notices);
     const EmbreeScene intersector(host.meshes());
     Film film(scene.render.width, scene.render.height, false, xyz_of(illuminant_spectrum(scene.film.white)));
-    seconds += render_cpu(host, intersector, {samples, 0.0, 0.0}, film, [](const RenderProgress&) {}).seconds;
+    seconds += render_picture(host, intersector, {samples, 0.0, 0.0}, film, [](const RenderProgress&) {}).seconds;
     return film.to_image();
 }
 

@@ -2,10 +2,12 @@
 #include "modeler/neighbour_graph.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "modeler/hidden_sites.h"
 #include "modeler/labelling.h"
@@ -131,6 +133,31 @@ TEST(ApolloniusGraph, WithoutWeightsIsDelaunaysInTheInterior) {
     }
     EXPECT_GT(interior, 3000u);
     EXPECT_LE(double(missed), 0.002 * double(interior)) << missed << " of " << interior;
+}
+
+/// Sites some millimetres across in a wide shape: from most of it their distances change almost alike. Culled by the ball alone,
+/// all of them might own most of it, and the search comes to 42 million cubes (multiplicative, Manhattan).
+TEST(ApolloniusGraph, FewSitesInAWideShapeTakeFewCubes) {
+    ShapeRecipe recipe;
+    recipe.kind = ShapeKind::cabochon;
+    recipe.size_mm = {400.0, 400.0, 200.0};
+    const auto shape = make_shape(recipe);
+    std::vector<Site> sites;
+    for (int i = 0; i < 27; ++i)
+        sites.push_back({openvdb::Vec3d(i % 3 - 1, i / 3 % 3 - 1 + 0.1 * (i % 2), i / 9 - 1), 1.0f + 0.01f * float(i % 7), 0});
+    const std::vector<char> hidden(sites.size(), 0);
+    // Half of the sites are below the cabochon's base.
+    const double spacing = 2.0 * spacing_of(*shape, sites.size());
+    for (const TessellationKind kind :
+         {TessellationKind::additive, TessellationKind::multiplicative, TessellationKind::manhattan}) {
+        std::atomic<std::uint64_t> cubes = 0;
+        const NeighbourGraph graph = apollonius_graph(sites, hidden, *shape, spacing, kind, &cubes);
+        // Every site has a face with another.
+        std::set<std::int32_t> joined;
+        for (const NeighbourPair& pair : graph) joined.insert({pair.first, pair.second});
+        EXPECT_GE(joined.size(), 18u) << int(kind);
+        EXPECT_LT(cubes, 10'000'000u) << int(kind);
+    }
 }
 
 TEST(ApolloniusGraph, DoesNotDependOnThreads) {

@@ -38,15 +38,28 @@ Ray towards_disc(Vec3 direction, double disc_radius_mm, double distance_mm, floa
 
 }  // namespace
 
-Goniometer::Goniometer(const std::string& scene_toml, double radius_mm)
-    : radius_mm_(radius_mm), scene_(parse_scene(scene_toml, "goniometer.toml", {}), notices_), intersector_(scene_.meshes()) {}
+Goniometer::Goniometer(const std::string& scene_toml, double radius_mm, bool as_devices_do)
+    : radius_mm_(radius_mm),
+      scene_(parse_scene(scene_toml, "goniometer.toml", {}), notices_),
+      intersector_(scene_.meshes()),
+      view_(scene_.view()) {
+    if (!as_devices_do) return;
+    bvh_.emplace(scene_.meshes());
+    view_ = copied_scene(scene_.view(), arrays_);
+}
 
 double Goniometer::trace(const Ray& ray, double wavelength_nm, std::uint32_t path, std::uint64_t seed) const {
     PathWavelengths<1> wavelengths{{float(wavelength_nm)}, {1.0f}, 1};
     PathRandom random(seed, 0, path);
     PathCounters counters;
-    PathTracer<1, EmbreeScene> tracer(scene_.view(), intersector_, wavelengths, random, counters);
-    return double(tracer.trace(ray).radiance.v[0] / table_at(scene_.view().spectra.white, float(wavelength_nm)));
+    const float white = table_at(view_.spectra.white, float(wavelength_nm));
+    if (bvh_) {
+        const BvhView<true> rays = bvh_->view<true>(view_.meshes);
+        PathTracer<1, BvhView<true>> tracer(view_, rays, wavelengths, random, counters);
+        return double(tracer.trace(ray).radiance.v[0] / white);
+    }
+    PathTracer<1, EmbreeScene> tracer(view_, intersector_, wavelengths, random, counters);
+    return double(tracer.trace(ray).radiance.v[0] / white);
 }
 
 Goniometer::Reading Goniometer::radiance(Vec3 direction, double spot_radius_mm, double wavelength_nm, int paths,

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer/cpu/embree_scene.h"
+#include "renderer/host/bvh.h"
 #include "renderer/host/host_scene.h"
+#include "renderer/host/scene_copy.h"
 
 namespace opal {
 
@@ -14,8 +17,9 @@ namespace opal {
 /// measures.
 class Goniometer {
   public:
-    /// `scene_toml` holds the sample around the origin, within `radius_mm` of it, and the environment.
-    Goniometer(const std::string& scene_toml, double radius_mm);
+    /// `scene_toml` holds the sample around the origin, within `radius_mm` of it, and the environment. `as_devices_do`: over a
+    /// copy of the scene, with the hierarchy of bounds that devices walk.
+    Goniometer(const std::string& scene_toml, double radius_mm, bool as_devices_do = false);
 
     struct Reading {
         double mean = 0.0, standard_error = 0.0;
@@ -38,6 +42,9 @@ class Goniometer {
     std::vector<std::string> notices_;
     HostScene scene_;
     EmbreeScene intersector_;
+    HostArrayCopier arrays_;
+    std::optional<Bvh> bvh_;  ///< where rays are traced as devices do
+    SceneView view_;
 };
 
 /// Writes an environment picture that is 1 within `angle_deg` of a direction and 0 elsewhere (texels of 1 degree).

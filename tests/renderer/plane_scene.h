@@ -7,7 +7,7 @@
 
 #include "formats/film_settings.h"
 #include "formats/scene.h"
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 
 namespace opal {
 
@@ -34,7 +34,7 @@ class PlaneScene {
                                       description.film.spectral, film_white(description.film), first_sample);
     }
     RenderOutcome render(Film& film, int samples, double noise = 0.0) const {
-        return render_cpu(host, intersector, {samples, 0.0, noise}, film, [](const RenderProgress&) {});
+        return render_picture(host, intersector, {samples, 0.0, noise}, film, [](const RenderProgress&) {});
     }
 
   private:

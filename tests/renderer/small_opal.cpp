@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "backends.h"
 #include "formats/film_settings.h"
 #include "formats/random.h"
 #include "formats/scene.h"
@@ -96,14 +97,15 @@ ScratchFolder::~ScratchFolder() {
     std::filesystem::remove_all(path_, ignored);
 }
 
-Rendered render_text(const std::string& scene_toml, int samples) {
+Rendered render_text(const std::string& scene_toml, int samples, const char* backend) {
     const SceneDescription scene = parse_scene(scene_toml, "test.toml", {});
     std::vector<std::string> notices;
     const HostScene host(scene, notices);
     const EmbreeScene intersector(host.meshes());
     Film film(scene.render.window(), scene.render.width, scene.render.height, scene.film.spectral, film_white(scene.film));
     Rendered rendered;
-    rendered.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {});
+    rendered.outcome = render_picture(
+        host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {}, backend_maker(backend, host.meshes()));
     rendered.image = film.to_image();
     add_aovs(host, intersector, scene.film.aovs, rendered.image);
     return rendered;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/opal_asset.h"
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 
 namespace opal {
 
@@ -51,8 +51,8 @@ struct Rendered {
     RenderOutcome outcome;
 };
 
-/// Renders a scene given as TOML (file names relative to `folder`'s files through absolute paths).
-Rendered render_text(const std::string& scene_toml, int samples);
+/// Renders a scene given as TOML (file names relative to `folder`'s files through absolute paths). `backend`: see backends.h.
+Rendered render_text(const std::string& scene_toml, int samples, const char* backend = "cpu");
 
 /// Mean and standard error over the pixels [x0, x1) x [y0, y1) of a channel, from the stored variances.
 struct MeanEstimate {

@@ -5,11 +5,14 @@
 
 #include "formats/random.h"
 #include "formats/units.h"
+#include "on_backends.h"
 #include "renderer/host/host_scene.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
+
+class RenderedBall : public OnBackends {};
 
 constexpr int size_px = 64;
 
@@ -88,7 +91,7 @@ TEST(Camera, CircleOfConfusionOfAnOrthographicLens) {
 
 /// A small white ball before black: how far its light is spread over the picture, about its middle, in px^2 per axis, and the
 /// standard error that the pixels' variances give.
-MeanEstimate spread_of_ball(const std::string& camera) {
+MeanEstimate spread_of_ball(const char* backend, const std::string& camera) {
     const Rendered rendered = render_text(
         "[render]\nwidth = 48\nheight = 48\nfilter = \"box\"\n[environment]\nkind = \"constant\"\n"
         "[camera]\nposition_mm = [0, -100, 0]\ntarget_mm = [0, 0, 0]\n" +
@@ -96,7 +99,7 @@ MeanEstimate spread_of_ball(const std::string& camera) {
             "[[material]]\nname = \"white\"\nalbedo = 0.9\n[[material]]\nname = \"black\"\nalbedo = 0.0\n"
             "[[object]]\nkind = \"sphere\"\nmaterial = \"white\"\nradius_mm = 0.2\n"
             "[[object]]\nkind = \"plane\"\nmaterial = \"black\"\ntranslate_mm = [0, 20, 0]\nrotate_deg = [90, 0, 0]\n",
-        64);
+        64, backend);
     const Image& image = rendered.image;
     const int mean = image.find_channel("G"), variance = image.find_channel("variance.G");
     double sum = 0.0, second = 0.0;
@@ -113,10 +116,10 @@ MeanEstimate spread_of_ball(const std::string& camera) {
 }
 
 /// What an open lens adds to the spread is a quarter of the squared radius of the circle of confusion.
-TEST(Camera, RenderedBallIsBlurredByTheCircleOfConfusion) {
+TEST_P(RenderedBall, IsBlurredByTheCircleOfConfusion) {
     const double unit_height = 2.0 * std::tan(0.5 * units::rad_from_deg(2.5));
-    const MeanEstimate sharp = spread_of_ball("vertical_fov_deg = 2.5\n");
-    const MeanEstimate blurred = spread_of_ball("vertical_fov_deg = 2.5\naperture_radius_mm = 2\nfocus_mm = 80\n");
+    const MeanEstimate sharp = spread_of_ball(GetParam(), "vertical_fov_deg = 2.5\n");
+    const MeanEstimate blurred = spread_of_ball(GetParam(), "vertical_fov_deg = 2.5\naperture_radius_mm = 2\nfocus_mm = 80\n");
     const double radius_px = 2.0 * 20.0 / (100.0 * 80.0) / unit_height * 48.0;
     EXPECT_NEAR(blurred.mean - sharp.mean, 0.25 * radius_px * radius_px,
                 4.0 * std::hypot(sharp.standard_error, blurred.standard_error));
@@ -155,6 +158,8 @@ TEST(Camera, PerspectiveScale) {
                                        "position_mm = [0, -15, 20]\ntarget_mm = [0, 0, 0]\n"),
                 expected, 0.01 * expected);
 }
+
+INSTANTIATE_TEST_SUITE_P(, RenderedBall, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

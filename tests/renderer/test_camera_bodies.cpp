@@ -3,11 +3,14 @@
 
 #include <cmath>
 
+#include "on_backends.h"
 #include "small_opal.h"
 
 /// Cameras whose rays start partly inside a body, against closed forms.
 namespace opal {
 namespace {
+
+class CameraBodies : public OnBackends {};
 
 constexpr int size_px = 32;
 
@@ -21,8 +24,8 @@ std::string window(const std::string& position, const std::string& target) {
     return "kind = \"orthographic\"\nview_height_mm = 8\nposition_mm = " + position + "\ntarget_mm = " + target + "\n";
 }
 
-void expect_invisible(const std::string& text) {
-    const Rendered rendered = render_text(text, 60);
+void expect_invisible(const char* backend, const std::string& text) {
+    const Rendered rendered = render_text(text, 60, backend);
     EXPECT_EQ(rendered.outcome.counters.lost_paths, 0u) << text;
     for (const char* channel : {"R", "G", "B"}) {
         const MeanEstimate mean = region_mean(rendered.image, channel, 0, 0, size_px, size_px);
@@ -34,22 +37,23 @@ void expect_invisible(const std::string& text) {
 
 /// Windows that cut a cap off a glass ball, from inside and from outside of the ball at their middles, and lenses: uniform light
 /// stays uniform.
-TEST(CameraBodies, GlassCutByTheCameraIsInvisible) {
+TEST_P(CameraBodies, GlassCutByTheCameraIsInvisible) {
     const std::string glass = "n = 1.5\n";
-    expect_invisible(scene(window("[0, 2.5, 0]", "[0, 9, 0]"), glass));
-    expect_invisible(scene(window("[0, -2.5, 0]", "[0, 9, 0]"), glass));
-    expect_invisible(scene(window("[3.5, 2.5, 0]", "[3.5, 9, 0]"), glass));
+    expect_invisible(GetParam(), scene(window("[0, 2.5, 0]", "[0, 9, 0]"), glass));
+    expect_invisible(GetParam(), scene(window("[0, -2.5, 0]", "[0, 9, 0]"), glass));
+    expect_invisible(GetParam(), scene(window("[3.5, 2.5, 0]", "[3.5, 9, 0]"), glass));
     const std::string lens = "aperture_radius_mm = 2.5\nfocus_mm = 20\nvertical_fov_deg = 10\n";
-    expect_invisible(scene(lens + "position_mm = [0, 2.6, 0]\ntarget_mm = [0, 9, 0]\n", glass));
-    expect_invisible(scene(lens + "position_mm = [2, 2.6, 0]\ntarget_mm = [2, -9, 0]\n", glass));
+    expect_invisible(GetParam(), scene(lens + "position_mm = [0, 2.6, 0]\ntarget_mm = [0, 9, 0]\n", glass));
+    expect_invisible(GetParam(), scene(lens + "position_mm = [2, 2.6, 0]\ntarget_mm = [2, -9, 0]\n", glass));
 }
 
 /// An absorbing ball that does not refract, cut by the window a millimetre before its middle: exp(-a L), L the way that is left.
-TEST(CameraBodies, WhatIsBeforeTheWindowDoesNotAbsorb) {
+TEST_P(CameraBodies, WhatIsBeforeTheWindowDoesNotAbsorb) {
     for (const double centre_mm : {0.0, 2.9}) {
         const std::string x = std::to_string(centre_mm);
-        const Rendered rendered = render_text(
-            scene(window("[" + x + ", -1, 0]", "[" + x + ", 9, 0]"), "n = 1.0\nmedium = { sigma_a_per_mm = 0.4 }\n"), 400);
+        const Rendered rendered =
+            render_text(scene(window("[" + x + ", -1, 0]", "[" + x + ", 9, 0]"), "n = 1.0\nmedium = { sigma_a_per_mm = 0.4 }\n"),
+                        400, GetParam());
         double expected = 0.0;
         constexpr int points = 2000;
         for (int i = 0; i < points; ++i)
@@ -66,7 +70,7 @@ TEST(CameraBodies, WhatIsBeforeTheWindowDoesNotAbsorb) {
 }
 
 /// Rays ask for themselves only where they differ.
-TEST(CameraBodies, AreKnownBeforehandWhereTheyAreTheSame) {
+TEST(BodiesAtTheCamera, AreKnownBeforehandWhereTheyAreTheSame) {
     const auto view_of = [](const std::string& camera) {
         const SceneDescription description = parse_scene(scene(camera, "n = 1.5\n"), "test.toml", {});
         std::vector<std::string> notices;
@@ -82,6 +86,8 @@ TEST(CameraBodies, AreKnownBeforehandWhereTheyAreTheSame) {
     EXPECT_EQ(view_of("aperture_radius_mm = 0.5\nposition_mm = [0, -3.2, 0]\ntarget_mm = [0, 9, 0]\n"), Known(0, 0));
     EXPECT_EQ(view_of("aperture_radius_mm = 0.5\nposition_mm = [0, -2.99, 0]\ntarget_mm = [0, 9, 0]\n"), Known(1, 0));
 }
+
+INSTANTIATE_TEST_SUITE_P(, CameraBodies, cpu_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

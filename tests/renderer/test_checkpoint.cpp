@@ -63,7 +63,7 @@ TEST(Checkpoint, TimeStopsWithinAPassAndContinuesToTheSameBits) {
     const auto stopped = scene.film();
     const double limit_s = 0.3 * expected.seconds;
     const auto nothing = [](const RenderProgress&) {};
-    const RenderOutcome part = render_cpu(scene.host, scene.intersector, {samples, limit_s, 0.0}, *stopped, nothing);
+    const RenderOutcome part = render_picture(scene.host, scene.intersector, {samples, limit_s, 0.0}, *stopped, nothing);
     EXPECT_FALSE(part.interrupted);
     // A pass of 16 samples alone would take more than that.
     EXPECT_LT(part.seconds, limit_s + 0.1 * expected.seconds);
@@ -85,7 +85,7 @@ TEST(Checkpoint, TimeStopsWithinAPassAndContinuesToTheSameBits) {
     expect_same_state(*unbroken, *stopped);
     // However short the time: a whole picture.
     const auto hurried = scene.film();
-    EXPECT_EQ(render_cpu(scene.host, scene.intersector, {samples, 1.0e-6, 0.0}, *hurried, nothing).finished_samples, 1);
+    EXPECT_EQ(render_picture(scene.host, scene.intersector, {samples, 1.0e-6, 0.0}, *hurried, nothing).finished_samples, 1);
 }
 
 /// While the picture is being rendered, whatever moment is caught.

@@ -2,14 +2,17 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
+#include "on_backends.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
 
+class Companions : public OnBackends {};
+
 /// Uniform light hides wrong weights between the lanes as long as their mean is right; a studio with coloured surroundings does
 /// not. One wavelength per path is the reference: nothing is weighted there.
-TEST(Companions, ChangeNothingButTheNoise) {
+TEST_P(Companions, ChangeNothingButTheNoise) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 300.0;
     small.constants.sigma_s_rayleigh_400nm_per_mm = 0.15;
@@ -25,7 +28,7 @@ TEST(Companions, ChangeNothingButTheNoise) {
                                "\n[[material]]\nname = \"floor\"\nalbedo = [0.7, 0.4, 0.2]\n[[object]]\nkind = \"plane\"\n"
                                "material = \"floor\"\ntranslate_mm = [0, 0, -3.1]\n[[object]]\nkind = \"opal\"\nfile = '" +
                                (folder / "opal.vdb").string() + "'\n",
-                           samples)
+                           samples, GetParam())
             .outcome.totals;
     };
     // Each render has random numbers of its own: with the same ones the heroes are the same, and so are their errors.
@@ -47,6 +50,8 @@ TEST(Companions, ChangeNothingButTheNoise) {
         EXPECT_GT(statistic, 0.25 * used) << "errors are overestimated: the test would see nothing";
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(, Companions, cpu_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

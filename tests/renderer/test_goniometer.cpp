@@ -6,10 +6,20 @@
 
 #include "formats/units.h"
 #include "goniometer.h"
+#include "on_backends.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
+
+/// Single rays, which devices do not trace: "cpu" and "loop" alone.
+class PlatesInTheGoniometer : public OnBackends {
+  protected:
+    void SetUp() override {
+        OnBackends::SetUp();
+        if (std::string(GetParam()) == "cuda") GTEST_SKIP() << "a device draws pictures, not single rays";
+    }
+};
 
 /// Quaternion that turns the lattice's [111] onto +Z.
 openvdb::math::Quat<float> stacking_axis_up() {
@@ -112,7 +122,7 @@ double pile_reflectance(const CrystalParameters& crystal, double coherence_nm, d
 
 /// The whole walk through a plate of one grain, against the pile's formula between the plate's faces (intensities added):
 /// reflected by a face F, by the pile R, by the far face.
-TEST(Goniometer, PlatesReflectAsPilesOfBlocksDo) {
+TEST_P(PlatesInTheGoniometer, ReflectAsPilesOfBlocksDo) {
     for (const double blocks : {1.0, 12.0, 200.0}) {
         SmallOpal small;
         small.constants.n_medium = 1.42;
@@ -123,7 +133,7 @@ TEST(Goniometer, PlatesReflectAsPilesOfBlocksDo) {
         const Goniometer goniometer("[environment]\nfile = '" + (folder / "above.exr").string() +
                                         "'\n[opal]\nmax_odds = 1e6\n[[object]]\nkind = \"opal\"\nfile = '" +
                                         (folder / "plate.vdb").string() + "'\n",
-                                    2.0);
+                                    2.0, std::string(GetParam()) == "loop");
         const CrystalParameters crystal{250.0, 1.45, 1.42};
         const double n = effective_index(crystal), face = std::pow((n - 1.0) / (n + 1.0), 2);
         const double bragg_nm = 2.0 * n * std::sqrt(2.0 / 3.0) * 250.0;
@@ -182,6 +192,8 @@ TEST(Reciprocity, OfManyGrainsInAirWithScatteringAndDisorder) {
     small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.05);
     expect_reciprocal(small, "", 520.0, 200000);
 }
+
+INSTANTIATE_TEST_SUITE_P(, PlatesInTheGoniometer, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

@@ -6,10 +6,15 @@
 #include "../formats/expect_error.h"
 #include "color_round_trip.h"
 #include "formats/illuminant.h"
+#include "on_backends.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
+
+/// Those that end with Loop are short enough to run in the devices' loop, too.
+class Illumination : public OnBackends {};
+class IlluminationLoop : public OnBackends {};
 
 /// A scene whose picture shows the environment alone: one small sphere, behind the camera.
 std::string bare_environment(const std::string& settings, const std::string& sampler) {
@@ -20,12 +25,12 @@ std::string bare_environment(const std::string& settings, const std::string& sam
 }
 
 /// The picture's mean colour, in linear sRGB, is that of the light, integrated over 1 nm, times `radiance`.
-void expect_color_of(const std::string& settings, const SampledSpectrum& light, double radiance) {
+void expect_color_of(const char* backend, const std::string& settings, const SampledSpectrum& light, double radiance) {
     const Rgb3d expected = linear_srgb_from_xyz(xyz_of(light));
     const double values[3] = {expected.r, expected.g, expected.b};
     const char* const channels[3] = {"R", "G", "B"};
     for (const std::string sampler : {"independent", "stratified"}) {
-        const Rendered rendered = render_text(bare_environment(settings, sampler), 256);
+        const Rendered rendered = render_text(bare_environment(settings, sampler), 256, backend);
         for (std::size_t c = 0; c < 3; ++c) {
             const MeanEstimate mean = region_mean(rendered.image, channels[c], 0, 0, 16, 16);
             // The variance of independent samples bounds that of stratified ones.
@@ -35,28 +40,29 @@ void expect_color_of(const std::string& settings, const SampledSpectrum& light, 
     }
 }
 
-TEST(Illumination, ConstantEnvironmentHasItsIlluminantsColor) {
-    expect_color_of("", illuminant_spectrum(IlluminantKind::d65), 1.0);
-    expect_color_of("illuminant = \"A\"\nradiance = 2.5", illuminant_spectrum(IlluminantKind::a), 2.5);
-    expect_color_of("illuminant = \"blackbody\"\ntemperature_k = 3200", illuminant_spectrum(IlluminantKind::blackbody, 3200.0),
+TEST_P(Illumination, ConstantEnvironmentHasItsIlluminantsColor) {
+    expect_color_of(GetParam(), "", illuminant_spectrum(IlluminantKind::d65), 1.0);
+    expect_color_of(GetParam(), "illuminant = \"A\"\nradiance = 2.5", illuminant_spectrum(IlluminantKind::a), 2.5);
+    expect_color_of(GetParam(), "illuminant = \"blackbody\"\ntemperature_k = 3200",
+                    illuminant_spectrum(IlluminantKind::blackbody, 3200.0), 1.0);
+    expect_color_of(GetParam(), "illuminant = \"led\"\ntemperature_k = 5000", illuminant_spectrum(IlluminantKind::led, 5000.0),
                     1.0);
-    expect_color_of("illuminant = \"led\"\ntemperature_k = 5000", illuminant_spectrum(IlluminantKind::led, 5000.0), 1.0);
 }
 
-TEST(Illumination, ConstantEnvironmentFromAFile) {
+TEST_P(Illumination, ConstantEnvironmentFromAFile) {
     const ScratchFolder folder;
     std::ofstream(folder / "lamp.csv") << "wavelength_nm,power\n400,0.1\n546,1\n548,5\n550,1\n700,0.4\n";
     const SampledSpectrum lamp = illuminant_spectrum(IlluminantKind::file, 0.0, folder / "lamp.csv");
-    expect_color_of("illuminant_file = '" + (folder / "lamp.csv").string() + "'", lamp, 1.0);
+    expect_color_of(GetParam(), "illuminant_file = '" + (folder / "lamp.csv").string() + "'", lamp, 1.0);
 }
 
 /// Spectral layers show the light itself, whatever white the picture is adapted to.
-TEST(Illumination, FilmsWhiteIsNeutralAndLeavesSpectraAlone) {
+TEST_P(Illumination, FilmsWhiteIsNeutralAndLeavesSpectraAlone) {
     const char* const channels[3] = {"R", "G", "B"};
     for (const std::string white : {"A", "E", "D65"}) {
         const std::string settings = "illuminant = \"" + white + "\"\n[film]\nspectral = true\nwhite = ";
-        const Rendered adapted = render_text(bare_environment(settings + "\"" + white + "\"", "independent"), 256);
-        const Rendered plain = render_text(bare_environment(settings + "\"D65\"", "independent"), 256);
+        const Rendered adapted = render_text(bare_environment(settings + "\"" + white + "\"", "independent"), 256, GetParam());
+        const Rendered plain = render_text(bare_environment(settings + "\"D65\"", "independent"), 256, GetParam());
         for (const char* channel : channels) {
             const MeanEstimate mean = region_mean(adapted.image, channel, 0, 0, 16, 16);
             EXPECT_NEAR(mean.mean, 1.0, 4.0 * mean.standard_error) << white << channel;
@@ -67,7 +73,7 @@ TEST(Illumination, FilmsWhiteIsNeutralAndLeavesSpectraAlone) {
 }
 
 /// A diffuse plane fills the view under uniform light: it shows the colour that its spectrum has under that light.
-TEST(Illumination, DiffusePlaneShowsItsAlbedo) {
+TEST_P(IlluminationLoop, DiffusePlaneShowsItsAlbedo) {
     const char* const channels[3] = {"R", "G", "B"};
     const std::pair<std::string, Upsampling> methods[] = {
         {"jakob-hanika", Upsampling::jakob_hanika}, {"smits", Upsampling::smits}, {"basis", Upsampling::basis}};
@@ -77,7 +83,7 @@ TEST(Illumination, DiffusePlaneShowsItsAlbedo) {
                 "\"\n[environment]\nkind = \"constant\"\nilluminant = \"A\"\n[camera]\nposition_mm = [0, -10, 40]\n"
                 "target_mm = [0, 0, 0]\n[[material]]\nname = \"paint\"\nalbedo = [0.8, 0.35, 0.1]\n[[object]]\n"
                 "kind = \"plane\"\nmaterial = \"paint\"\n",
-            256);
+            256, GetParam());
         SpectrumTableOptions options;
         options.upsampling = upsampling;
         const ReflectanceTable reflectance = reflectance_table(make_spectrum_tables(options), {0.8f, 0.35f, 0.1f});
@@ -93,7 +99,7 @@ TEST(Illumination, DiffusePlaneShowsItsAlbedo) {
     }
 }
 
-TEST(Illumination, BadLightsAreRefused) {
+TEST(BadLights, AreRefused) {
     const ScratchFolder folder;
     std::ofstream(folder / "broken.csv") << "400,1\n390,1\n";
     EXPECT_INPUT_ERROR(
@@ -107,6 +113,9 @@ TEST(Illumination, BadLightsAreRefused) {
                        "temperature_k");
     EXPECT_INPUT_ERROR(render_text(bare_environment("[color]\nupsampling = \"meng\"", "independent"), 1), "upsampling");
 }
+
+INSTANTIATE_TEST_SUITE_P(, Illumination, cpu_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, IlluminationLoop, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

@@ -3,10 +3,15 @@
 
 #include "../formats/expect_error.h"
 #include "formats/units.h"
+#include "on_backends.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
+
+/// Those that end with Loop are short enough to run in the devices' loop, too.
+class LightsInScenes : public OnBackends {};
+class LightsInScenesLoop : public OnBackends {};
 
 /// A large grey plane under some lights, seen by an orthographic camera that shows a square of 0.2 mm around the origin.
 std::string lit_plane(const std::string& lights, const std::string& render = "", double environment = 0.0) {
@@ -49,10 +54,10 @@ MeanEstimate green(const Rendered& rendered) {
 
 /// A plane of albedo 1/2 shows half the irradiance over pi. The view is 0.2 mm wide: over it the irradiance varies by less than
 /// (0.1 mm / 20 mm)^2.
-TEST(LightsInScenes, DiffusePlaneHasTheClosedFormsOfItsIrradiance) {
+TEST_P(LightsInScenesLoop, DiffusePlaneHasTheClosedFormsOfItsIrradiance) {
     for (const LitCase& lit : lit_cases()) {
         const double expected = 0.5 * lit.irradiance / units::pi;
-        const MeanEstimate mean = green(render_text(lit_plane(lit.light), 256));
+        const MeanEstimate mean = green(render_text(lit_plane(lit.light), 256, GetParam()));
         EXPECT_NEAR(mean.mean, expected, 4.0 * mean.standard_error + 2.5e-5 * expected) << lit.name;
         EXPECT_LT(mean.standard_error, 0.01 * expected) << lit.name;
     }
@@ -60,7 +65,7 @@ TEST(LightsInScenes, DiffusePlaneHasTheClosedFormsOfItsIrradiance) {
 
 /// Drawn lights alone, drawn directions alone, and both: the same mean, and both together are never much noisier than the better
 /// of the two. (By directions alone small lights are hardly ever met: large ones here.)
-TEST(LightsInScenes, BothWaysOfFindingLightAgree) {
+TEST_P(LightsInScenes, BothWaysOfFindingLightAgree) {
     const std::string lights =
         "[[light]]\nkind = \"sphere\"\nposition_mm = [3, 0, 6]\nradius_mm = 4\nradiance = 3\ncolor = [1, 0.6, 0.3]\n"
         "[[light]]\nkind = \"area\"\nposition_mm = [-4, 0, 4]\nwidth_mm = 9\nheight_mm = 9\nradiance = 2\nilluminant = \"A\"\n"
@@ -70,7 +75,7 @@ TEST(LightsInScenes, BothWaysOfFindingLightAgree) {
     for (const char* sampling : {"connections", "scattering", "both"})
         estimates.push_back(green(render_text(
             lit_plane(lights, "seed = " + std::to_string(seed++) + "\nlight_sampling = \"" + std::string(sampling) + "\"\n", 0.4),
-            512)));
+            512, GetParam())));
     for (const MeanEstimate& estimate : estimates) EXPECT_LT(estimate.standard_error, 0.01 * estimates[2].mean);
     for (std::size_t i = 0; i < 2; ++i)
         EXPECT_NEAR(estimates[i].mean, estimates[2].mean,
@@ -81,15 +86,15 @@ TEST(LightsInScenes, BothWaysOfFindingLightAgree) {
 }
 
 /// The camera sees a light as bright as it is, in its colour; one that it is not to see it looks through; the back is black.
-TEST(LightsInScenes, CameraSeesLights) {
-    const auto look = [](const std::string& light) {
+TEST_P(LightsInScenesLoop, CameraSeesLights) {
+    const auto look = [&](const std::string& light) {
         return render_text(
             "[render]\nwidth = 8\nheight = 8\nsampler = \"independent\"\n[environment]\nkind = \"constant\"\n"
             "radiance = 0.25\n[camera]\nposition_mm = [0, -40, 0]\ntarget_mm = [0, 0, 0]\nvertical_fov_deg = 1\n"
             "[[material]]\nname = \"grey\"\n[[object]]\nkind = \"sphere\"\nmaterial = \"grey\"\n"
             "translate_mm = [0, -90, 0]\n" +
                 light,
-            256);
+            256, GetParam());
     };
     const auto expect = [](const Rendered& rendered, double value) {
         const MeanEstimate mean = region_mean(rendered.image, "G", 0, 0, 8, 8);
@@ -112,7 +117,7 @@ TEST(LightsInScenes, CameraSeesLights) {
 
 /// Inside one large luminous sphere, in the dark, a clear scattering opal is as bright as the sphere: nothing is lost or counted
 /// twice, whichever way light is found.
-TEST(LightsInScenes, FurnaceOfASphereLight) {
+TEST_P(LightsInScenes, FurnaceOfASphereLight) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 300.0;
     small.constants.sigma_s_mie_per_mm = 0.2;
@@ -130,14 +135,14 @@ TEST(LightsInScenes, FurnaceOfASphereLight) {
         "[[material]]\nname = \"white\"\nalbedo = 1.0\n[[object]]\nkind = \"sphere\"\nradius_mm = 1\nmaterial = \"white\"\n"
         "translate_mm = [0, 0, -4.2]\n[[object]]\nkind = \"opal\"\nfile = '" +
             (folder / "opal.vdb").string() + "'\n" + room,
-        256);
+        256, GetParam());
     const MeanEstimate mean = region_mean(rendered.image, "G", 0, 0, 32, 32);
     const double truncated = rendered.outcome.totals.truncated_rgb[1] / double(rendered.outcome.totals.samples);
     EXPECT_NEAR(mean.mean + truncated, 1.0, 4.0 * mean.standard_error);
     EXPECT_LT(mean.standard_error, 0.004);
 }
 
-TEST(LightsInScenes, LightsInsideBodiesAreRefused) {
+TEST(LightsInsideBodies, AreRefused) {
     SmallOpal small;
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "opal.vdb");
@@ -151,6 +156,9 @@ TEST(LightsInScenes, LightsInsideBodiesAreRefused) {
                                    1),
                        "light.0: the light at [0, 0, 5] reaches into a transparent object");
 }
+
+INSTANTIATE_TEST_SUITE_P(, LightsInScenes, cpu_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, LightsInScenesLoop, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

@@ -2,14 +2,19 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
+#include "on_backends.h"
 #include "renderer/host/spectrum_tables.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
 
+/// Those that end with Loop are short enough to run in the devices' loop, too.
+class Media : public OnBackends {};
+class MediaLoop : public OnBackends {};
+
 /// A plate seen from above in uniform light.
-Rendered render_plate(const SmallOpal& small, const std::string& settings, int samples) {
+Rendered render_plate(const char* backend, const SmallOpal& small, const std::string& settings, int samples) {
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "plate.vdb");
     return render_text(
@@ -17,7 +22,7 @@ Rendered render_plate(const SmallOpal& small, const std::string& settings, int s
         "position_mm = [0, 0, 30]\ntarget_mm = [0, 0, 0]\nup = [0, 1, 0]\nview_height_mm = 1.0\n[environment]\nkind = "
         "\"constant\"\n[[object]]\nkind = \"opal\"\nfile = '" +
             (folder / "plate.vdb").string() + "'\n[opal]\n" + settings,
-        samples);
+        samples, backend);
 }
 
 SmallOpal plate() {
@@ -50,8 +55,8 @@ double plate_radiance(double n, double optical_depth) {
 }
 
 /// All 48 bins within 4 standard errors of Beer's and Lambert's law. `mean_scale`: of the field over the thickness.
-void expect_beer_lambert(const SmallOpal& small, double mean_scale, const std::string& settings) {
-    const Rendered rendered = render_plate(small, settings, 1536);
+void expect_beer_lambert(const char* backend, const SmallOpal& small, double mean_scale, const std::string& settings) {
+    const Rendered rendered = render_plate(backend, small, settings, 1536);
     EXPECT_EQ(rendered.outcome.counters.majorant_violations, 0u);
     const SpectrumTablesData tables = make_spectrum_tables();
     for (int bin = 0; bin < num_bins; ++bin) {
@@ -73,22 +78,22 @@ void expect_beer_lambert(const SmallOpal& small, double mean_scale, const std::s
     }
 }
 
-TEST(Media, AbsorptionInLayersFollowsBeerLambertAtEveryWavelength) {
+TEST_P(Media, AbsorptionInLayersFollowsBeerLambertAtEveryWavelength) {
     SmallOpal small = plate();
     small.constants.sigma_a_per_mm = steep_absorber();
     // Voxels lie at multiples of 0.1 mm, so the integral over [-0.5, 0.5] is the trapezoid of their values: 5 of 10 steps.
     small.fields[0] = [](const auto& p) { return std::lround(p.z() / 0.1) % 2 == 0 ? 2.0 : 0.0; };
-    expect_beer_lambert(small, 1.0, "majorants = \"global\"\ncompanions = 0\n");
-    expect_beer_lambert(small, 1.0, "majorants = \"local\"\ncompanions = 3\n");
-    expect_beer_lambert(small, 1.0, "majorants = \"global\"\ncompanions = 7\n");
+    expect_beer_lambert(GetParam(), small, 1.0, "majorants = \"global\"\ncompanions = 0\n");
+    expect_beer_lambert(GetParam(), small, 1.0, "majorants = \"local\"\ncompanions = 3\n");
+    expect_beer_lambert(GetParam(), small, 1.0, "majorants = \"global\"\ncompanions = 7\n");
 }
 
-TEST(Media, AbsorptionAlongAGradientFollowsBeerLambertAtEveryWavelength) {
+TEST_P(Media, AbsorptionAlongAGradientFollowsBeerLambertAtEveryWavelength) {
     SmallOpal small = plate();
     small.constants.sigma_a_per_mm = steep_absorber();
     small.fields[0] = [](const auto& p) { return std::max(0.0, 0.8 + 1.5 * p.z()); };
     for (const char* companions : {"0", "3", "7"})
-        expect_beer_lambert(small, 0.8, "companions = " + std::string(companions) + "\n");
+        expect_beer_lambert(GetParam(), small, 0.8, "companions = " + std::string(companions) + "\n");
 }
 
 double difference_statistic(const SpectrumTotals& a, const SpectrumTotals& b) {
@@ -107,7 +112,7 @@ double difference_statistic(const SpectrumTotals& a, const SpectrumTotals& b) {
 
 /// The field is the same wherever the picture looks, but not at a corner of the plate, so that it stays a field: with one cell
 /// for all of it every collision is tentative.
-TEST(Media, GridsEqualHomogeneousMediaOfTheSameValue) {
+TEST_P(Media, GridsEqualHomogeneousMediaOfTheSameValue) {
     SmallOpal uniform = plate();
     uniform.constants.sigma_a_per_mm = absorber_spectrum("light-blue-dye", 0.05);
     uniform.constants.sigma_s_rayleigh_400nm_per_mm = 0.6;
@@ -119,9 +124,9 @@ TEST(Media, GridsEqualHomogeneousMediaOfTheSameValue) {
     };
     grids.fields = {except_at_a_corner(1.0), except_at_a_corner(0.6), except_at_a_corner(0.3)};
     for (const char* companions : {"companions = 0\n", "companions = 3\n"}) {
-        const SpectrumTotals homogeneous = render_plate(uniform, companions, 512).outcome.totals;
+        const SpectrumTotals homogeneous = render_plate(GetParam(), uniform, companions, 512).outcome.totals;
         for (const char* majorants : {"majorants = \"local\"\n", "majorants = \"global\"\n"}) {
-            const Rendered rendered = render_plate(grids, std::string(companions) + majorants, 512);
+            const Rendered rendered = render_plate(GetParam(), grids, std::string(companions) + majorants, 512);
             EXPECT_EQ(rendered.outcome.counters.majorant_violations, 0u);
             const double statistic = difference_statistic(rendered.outcome.totals, homogeneous);
             EXPECT_LT(statistic, chi_square_limit(num_bins)) << companions << majorants;
@@ -129,7 +134,7 @@ TEST(Media, GridsEqualHomogeneousMediaOfTheSameValue) {
     }
 }
 
-TEST(Media, ConstantGridsGiveTheSameBitsAsNone) {
+TEST_P(MediaLoop, ConstantGridsGiveTheSameBitsAsNone) {
     SmallOpal without = plate();
     without.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.4);
     without.constants.sigma_s_rayleigh_400nm_per_mm = 0.5;
@@ -137,8 +142,11 @@ TEST(Media, ConstantGridsGiveTheSameBitsAsNone) {
     with.fields[0] = [](const auto&) { return 1.0; };
     with.fields[1] = [](const auto&) { return 0.5; };
     with.fields[2] = [](const auto&) { return 0.0; };
-    EXPECT_EQ(render_plate(with, "", 8).image.pixels, render_plate(without, "", 8).image.pixels);
+    EXPECT_EQ(render_plate(GetParam(), with, "", 8).image.pixels, render_plate(GetParam(), without, "", 8).image.pixels);
 }
+
+INSTANTIATE_TEST_SUITE_P(, Media, cpu_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, MediaLoop, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "on_backends.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
+
+/// Those that end with Loop are short enough to run in the devices' loop, too.
+class SeveralOpals : public OnBackends {};
+class SeveralOpalsLoop : public OnBackends {};
 
 std::string opal_at(const std::filesystem::path& file, double x_mm, int priority) {
     return "[[object]]\nkind = \"opal\"\nfile = '" + file.string() + "'\ntranslate_mm = [" + std::to_string(x_mm) +
@@ -47,7 +52,7 @@ struct TwoFiles {
     }
 };
 
-TEST(SeveralOpals, OverlappingOnesAreInvisibleUnderUniformLight) {
+TEST_P(SeveralOpals, OverlappingOnesAreInvisibleUnderUniformLight) {
     const ScratchFolder folder;
     SmallOpal first, second;
     first.constants.sphere_diameter_nm = 300.0;
@@ -61,7 +66,7 @@ TEST(SeveralOpals, OverlappingOnesAreInvisibleUnderUniformLight) {
         const Rendered rendered =
             render_text(small_scene(from_the_side, "kind = \"constant\"\n") + opal_at(folder / "first.vdb", -1.0, 0) +
                             opal_at(folder / "second.vdb", 1.0, priority),
-                        64);
+                        64, GetParam());
         const MeanEstimate mean = mean_of(rendered);
         const double truncated = rendered.outcome.totals.truncated_rgb[1] / double(rendered.outcome.totals.samples);
         EXPECT_NEAR(mean.mean + truncated, 1.0, 4.0 * mean.standard_error) << priority;
@@ -71,27 +76,27 @@ TEST(SeveralOpals, OverlappingOnesAreInvisibleUnderUniformLight) {
     }
 }
 
-TEST(SeveralOpals, OneOfLowerPriorityInsideAnotherIsNotThere) {
+TEST_P(SeveralOpals, OneOfLowerPriorityInsideAnotherIsNotThere) {
     const TwoFiles files;
     const std::string head = small_scene(from_the_side, "kind = \"constant\"\n");
-    const Rendered alone = render_text(head + opal_at(files.light, 0.0, 0), 96);
-    const Rendered hidden = render_text(head + opal_at(files.dense, 0.4, -1) + opal_at(files.light, 0.0, 0), 96);
+    const Rendered alone = render_text(head + opal_at(files.light, 0.0, 0), 96, GetParam());
+    const Rendered hidden = render_text(head + opal_at(files.dense, 0.4, -1) + opal_at(files.light, 0.0, 0), 96, GetParam());
     expect_same_light(alone, hidden, "hidden");
-    const Rendered seen = render_text(head + opal_at(files.dense, 0.4, 1) + opal_at(files.light, 0.0, 0), 96);
+    const Rendered seen = render_text(head + opal_at(files.dense, 0.4, 1) + opal_at(files.light, 0.0, 0), 96, GetParam());
     const MeanEstimate first = mean_of(alone), second = mean_of(seen);
     EXPECT_GT(std::abs(first.mean - second.mean), 8.0 * std::hypot(first.standard_error, second.standard_error))
         << "of higher priority it changes the picture";
 }
 
-TEST(SeveralOpals, TheOrderInTheFileDecidesBetweenEqualPriorities) {
+TEST_P(SeveralOpals, TheOrderInTheFileDecidesBetweenEqualPriorities) {
     const TwoFiles files;
     const std::string head = small_scene(from_the_side, "kind = \"constant\"\n");
-    const Rendered by_order = render_text(head + opal_at(files.light, 0.0, 0) + opal_at(files.dense, 1.5, 0), 64);
-    const Rendered by_priority = render_text(head + opal_at(files.dense, 1.5, 1) + opal_at(files.light, 0.0, 0), 64);
+    const Rendered by_order = render_text(head + opal_at(files.light, 0.0, 0) + opal_at(files.dense, 1.5, 0), 64, GetParam());
+    const Rendered by_priority = render_text(head + opal_at(files.dense, 1.5, 1) + opal_at(files.light, 0.0, 0), 64, GetParam());
     expect_same_light(by_order, by_priority, "the later object wins");
 }
 
-TEST(SeveralOpals, ACameraMayStandInsideTwo) {
+TEST_P(SeveralOpalsLoop, ACameraMayStandInsideTwo) {
     const TwoFiles files;
     // Uniform light: the furnace holds from inside, too, but for what is absorbed.
     SmallOpal small;
@@ -102,13 +107,16 @@ TEST(SeveralOpals, ACameraMayStandInsideTwo) {
     const Rendered rendered =
         render_text(small_scene("position_mm = [0.3, -0.2, 0.1]\ntarget_mm = [0, 5, 0]\n", "kind = \"constant\"\n") +
                         "[opal]\ndiffraction = \"none\"\n" + opal_at(files.light, 0.0, 0) + opal_at(files.dense, 0.0, 1),
-                    128);
+                    128, GetParam());
     const MeanEstimate mean = mean_of(rendered);
     const double truncated = rendered.outcome.totals.truncated_rgb[1] / double(rendered.outcome.totals.samples);
     EXPECT_NEAR(mean.mean + truncated, 1.0, 4.0 * mean.standard_error);
     EXPECT_LT(mean.standard_error, 0.01);
     EXPECT_EQ(rendered.outcome.counters.lost_paths, 0u);
 }
+
+INSTANTIATE_TEST_SUITE_P(, SeveralOpals, cpu_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, SeveralOpalsLoop, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "on_backends.h"
 #include "renderer/host/spectrum_tables.h"
 #include "small_opal.h"
 
 namespace opal {
 namespace {
+
+class Slab : public OnBackends {};
 
 /// A plate of thickness d, index n, absorption sigma at normal incidence in uniform light of radiance 1 shows R + T of the
 /// incoherent plate (Born & Wolf 1.6, intensities added): with F the Fresnel reflectance and a = exp(-sigma d),
@@ -16,7 +19,7 @@ double plate_radiance(double n, double sigma_per_mm, double thickness_mm) {
     return f + f * a * transmitted + transmitted;
 }
 
-TEST(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
+TEST_P(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
     SmallOpal small;
     small.radius_mm = 4.0;
     small.half_thickness_mm = 0.5;
@@ -33,7 +36,7 @@ TEST(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
         "\"constant\"\n"
         "[[object]]\nkind = \"opal\"\nfile = '" +
             (folder / "slab.vdb").string() + "'\n",
-        2048);
+        2048, GetParam());
     const SpectrumTablesData tables = make_spectrum_tables();
     for (int bin = 1; bin < num_bins - 1; ++bin) {
         double expected = 0.0, white = 0.0;
@@ -57,6 +60,8 @@ TEST(Slab, AbsorbsByBeerLambertAtEveryWavelength) {
         EXPECT_NEAR(sum / (24 * 24), mean, 1e-4 * mean);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(, Slab, cpu_loop_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal

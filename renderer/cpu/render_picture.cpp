@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -61,7 +61,7 @@ class RenderRun {
     RenderRun(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
               const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device)
         : guides_(scene, intersector),
-          device_(make_device ? make_device(guides_.scene()) : nullptr),
+          device_(make_device ? make_device(guides_.scene(), film) : nullptr),
           intersector_(intersector),
           limits_(limits),
           film_(film),
@@ -101,6 +101,8 @@ class RenderRun {
         outcome.finished_samples = int(lowest);
         outcome.new_samples = film_.total_samples() - samples_before;
         outcome.seconds = watch_.seconds();
+        if (device_) outcome.devices = device_->names();
+        if (device_) outcome.device_seconds = device_->kernel_seconds();
         return outcome;
     }
 
@@ -220,8 +222,8 @@ class RenderRun {
 
 }  // namespace
 
-RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device) {
+RenderOutcome render_picture(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
+                             const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device) {
     return RenderRun(scene, intersector, limits, film, progress, make_device).run();
 }
 

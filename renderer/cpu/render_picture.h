@@ -25,7 +25,9 @@ struct RenderOutcome {
     double seconds = 0.0;           ///< of this run
     std::uint64_t new_samples = 0;  ///< drawn in it
     bool interrupted = false;
-    int finished_samples = 0;  ///< that every pixel has
+    int finished_samples = 0;                     ///< that every pixel has
+    std::vector<std::string> devices;             ///< that drew them; none: the processor
+    std::optional<KernelSeconds> device_seconds;  ///< by the devices' own clocks, of all together
 };
 
 /// How far a render has come, and how fast.
@@ -34,14 +36,14 @@ struct RenderProgress {
     double paths_per_second = 0.0;
 };
 
-/// Makes the device that draws the samples of a scene; null: the processor's cores do.
-using MakeDevice = std::function<std::unique_ptr<PathDevice>(const SceneView&)>;
+/// Makes the device that draws the samples of a scene for a film; null: the processor's cores do.
+using MakeDevice = std::function<std::unique_ptr<PathDevice>(const SceneView&, const Film&)>;
 
 /// Renders a scene on all CPU cores, or on the device that `make_device` gives, going on from what the film holds: TBB over the
 /// film's blocks, pass after pass, so that whatever ends it leaves a picture; blocks then have sample counts of their own. The
 /// film's content depends on the scene and the limits alone, not on threads, passes or interruptions. `progress` is called from
 /// all threads.
-RenderOutcome render_cpu(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
-                         const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device = {});
+RenderOutcome render_picture(const HostScene& scene, const EmbreeScene& intersector, const RenderLimits& limits, Film& film,
+                             const std::function<void(const RenderProgress&)>& progress, const MakeDevice& make_device = {});
 
 }  // namespace opal
