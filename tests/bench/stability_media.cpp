@@ -141,7 +141,7 @@ void add_depth_rows(bool quick, StabilityRows& rows) {
             const ScatteringBall ball = scattering_ball(depth, bounces, samples);
             const std::string method = fmt::format("white scattering ball, {} bounces", bounces);
             const std::string outcome = "reported (truncated_rgb); a warning where over 1 % of the paths are cut off",
-                              test = "Furnace.TruncationIsReported; Stability.ScatteringBallsOfAnyDepthKeepTheirLight";
+                              test = "FurnaceLoop.TruncationIsReported; Stability.ScatteringBallsOfAnyDepthKeepTheirLight";
             const auto add = [&](Estimate error, const std::string& unit) {
                 rows.push_back({"optical depth", method, input, depth, error, unit, outcome, test});
             };
@@ -180,7 +180,7 @@ void add_bounce_rows(bool quick, StabilityRows& rows) {
             rows.push_back({"bounces", "milky ball, 5 scatterings per mm, 6 mm", "render.max_bounces", double(bounces), error,
                             unit,
                             "truncated_rgb and per wavelength in --stats; a warning where over 1 % of the paths are cut off",
-                            "Furnace.TruncationIsReported; Stability.TruncatedLightIsReportedAtAnyBounceLimit"});
+                            "FurnaceLoop.TruncationIsReported; Stability.TruncatedLightIsReportedAtAnyBounceLimit"});
         };
         add(ball.missing, "light missing from 1");
         add(ball.truncated, "share of the light reported as cut off");
