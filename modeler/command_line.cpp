@@ -156,7 +156,7 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
             ->type_name("PIXELS");
     build
         ->add_option("--quality", arguments.quality,
-                     "with --for: the pixels of a preset of opal-render: draft 10, preview 5, final 3, reference 1")
+                     "with --for: the pixels of a preset of opal-render: draft 10, preview 3, final 1, reference 0.5")
         ->check(CLI::IsMember(quality_names()))
         ->needs(scene)
         ->excludes(pixels);

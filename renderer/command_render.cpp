@@ -21,6 +21,7 @@
 #include "renderer/host/film_preview.h"
 #include "renderer/host/live_view.h"
 #include "renderer/host/render_fingerprint.h"
+#include "renderer/host/render_warnings.h"
 #include "renderer/render_animation.h"
 #include "renderer/render_command.h"
 #include "renderer/render_options.h"
@@ -96,17 +97,8 @@ void print_summary(const RenderOptions& options, const SceneDescription& scene, 
                options.png().filename().string(), window.width(), window.height(), samples_text(outcome, film), noise_text(film),
                format_duration(outcome.seconds), double(outcome.new_samples) / std::max(1.0e-9, outcome.seconds),
                counters.truncated_paths, counters.lost_paths, counters.not_a_number);
-    // From here on the missing light shows: the body of a milky opal turns dark and reddish.
-    if (double(counters.truncated_paths) > 0.01 * double(film.total_samples()))
-        fmt::print(stderr,
-                   "opal-render: warning: {:.1f} % of the paths were cut off after {} bounces; raise render.max_bounces\n",
-                   100.0 * double(counters.truncated_paths) / double(film.total_samples()), scene.render.max_bounces);
-    if (counters.majorant_violations > 0)
-        fmt::print(stderr, "opal-render: warning: {} collisions met a field above its majorant; please report the scene\n",
-                   counters.majorant_violations);
-    if (counters.not_a_number > 0)
-        fmt::print(stderr, "opal-render: warning: {} samples were not numbers and count as black; please report the scene\n",
-                   counters.not_a_number);
+    for (const std::string& warning : render_warnings(counters, film.total_samples(), scene.render.max_bounces))
+        fmt::print(stderr, "opal-render: warning: {}\n", warning);
 }
 
 }  // namespace

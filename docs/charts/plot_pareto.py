@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Speed against accuracy, from pareto.csv that `opal-bench pareto -o DIR` writes.
 
-usage: plot_pareto.py DIR  ->  DIR/pareto.png, DIR/pareto_time.png, DIR/pareto.html
+usage: plot_pareto.py pareto.csv pareto.png  ->  pareto.png, pareto_time.png and pareto.html beside it
 """
 import base64
 import csv
@@ -14,21 +15,26 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 COLORS = {"precious_opal": "#222222", "white_opal": "#3f88c5", "fire_opal": "#d1495b", "block": "#6a994e"}
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
-RESOLVED = 2.0  # standard errors
+RESOLVED = 2.0  # standard errors, of the squared error of patches (which are on the large side)
+RESOLVED_MEAN = 4.0  # of the mean
 NOISE = 0.1  # of a pixel, to which costs refer
 
 
-def read(folder):
+def read(table):
     rows = []
-    for row in csv.DictReader(open(folder / "pareto.csv")):
+    for row in csv.DictReader(open(table)):
         for key, value in row.items():
             if key not in ("scene", "choice", "variant", "command"):
                 row[key] = float(value)
-        row["resolved"] = row["squared_error"] > RESOLVED * row["squared_error_se"]
-        row["error"] = math.sqrt(max(row["squared_error"], 0.0)) if row["resolved"] else 0.0
+        # What is wrong by less than the patches' noise may still show in the mean of all.
+        patches = math.sqrt(max(row["squared_error"], 0.0)) if row["squared_error"] > RESOLVED * row["squared_error_se"] else 0.0
+        mean = abs(row["mean_error"]) if abs(row["mean_error"]) > RESOLVED_MEAN * row["mean_error_se"] else 0.0
+        row["error"] = max(patches, mean)
+        row["resolved"] = row["error"] > 0.0
         row["limit"] = math.sqrt(max(row["squared_error"], 0.0) + RESOLVED * row["squared_error_se"])
         rows.append(row)
     for row in rows:
@@ -45,9 +51,9 @@ def read(folder):
 def plot_choices(rows, target):
     """A panel per choice: cost over error. On the front: filled."""
     choices = list(dict.fromkeys(row["choice"] for row in rows))
-    columns = 4
+    columns = 3
     lines = math.ceil(len(choices) / columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(4.6 * columns, 3.7 * lines))
+    figure, axes = plt.subplots(lines, columns, figsize=(6.0 * columns, 3.4 * lines))
     for axis in list(axes.flat)[len(choices) :]:
         axis.axis("off")
     floor = 1e-3
@@ -68,14 +74,20 @@ def plot_choices(rows, target):
                 axis.annotate("", (row["relative_cost"], error / 1.8), (row["relative_cost"], error),
                               arrowprops={"arrowstyle": "->", "color": color, "lw": 0.7})
         for i, variant in enumerate(variants):
-            axis.plot([], [], MARKERS[i % len(MARKERS)], color="#888888", label=variant[:34])
+            axis.plot([], [], MARKERS[i % len(MARKERS)], color="#888888", label=variant.split(":")[0][:26])
         axis.set_xscale("log")
         axis.set_yscale("log")
+        low, high = axis.get_xlim()
+        axis.set_xlim(min(low, 0.5), max(high, 2.5))
+        axis.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 2.0, 5.0), numticks=12))
+        axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
         axis.set_ylim(floor / 1.5, 4.0)
         axis.set_title(choice, fontsize=10)
         axis.grid(alpha=0.25, which="both")
         axis.tick_params(labelsize=7)
-        axis.legend(fontsize=6, loc="best", framealpha=0.7)
+        axis.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     for axis in axes.flat[::columns]:
         axis.set_ylabel("error of the picture (bias, RMS)", fontsize=8)
     for axis in axes[-1]:
@@ -121,9 +133,9 @@ def percent(value):
     return f"{100.0 * value:.2g}"
 
 
-def write_page(rows, folder):
+def write_page(rows, picture_of_choices, picture_of_time, target):
     def picture(name):
-        data = base64.b64encode((folder / name).read_bytes()).decode()
+        data = base64.b64encode(name.read_bytes()).decode()
         return f'<img src="data:image/png;base64,{data}" style="max-width:100%">'
 
     text = [
@@ -133,10 +145,10 @@ def write_page(rows, folder):
         "td:nth-child(-n+3),th:nth-child(-n+3){text-align:left}tr.front{background:#eef6ee}code{font-size:11px;white-space:nowrap}",
         "details{display:inline}summary{cursor:pointer;color:#666}</style>",
         "<h1>Speed against accuracy</h1><p>Every choice that trades one for the other, alone, against its most exact value; then whole",
-        " sets of settings. Cost: processor time until a million pixels of gem have 10 % noise. Error: bias alone (root mean square over the",
-        " gem's pixels of what the pictures converge to, relative); &lt;: not resolved, upper limit of two standard errors. Green: on the front,",
+        " sets of settings. Cost: processor time until a million pixels of gem have 10 % noise. Error: bias alone (root mean square over patches",
+        " as large as a grain of what the pictures converge to, relative; or of the mean of all, where that is larger); &lt;: not resolved, upper limit of two standard errors. Green: on the front,",
         " no cheaper value of that choice has as small an error.</p>",
-        picture("pareto_time.png"), picture("pareto.png"),
+        picture(picture_of_time), picture(picture_of_choices),
         "<table><tr><th>scene<th>choice<th>value<th>cost, s<th>over exact<th>&micro;s per sample<th>error, %<th>mean, %<th>memory, MB<th>file, MB",
         "<th>model, s<th>load, s<th>",
     ]
@@ -151,15 +163,16 @@ def write_page(rows, folder):
             f"<td><details><summary>command</summary><code>{html.escape(row['command'])}</code></details>"
         )
     text.append("</table></html>\n")
-    (folder / "pareto.html").write_text("\n".join(text))
+    target.write_text("\n".join(text))
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1])
-    rows = read(folder)
-    plot_choices(rows, folder / "pareto.png")
-    plot_time(rows, folder / "pareto_time.png")
-    write_page(rows, folder)
+    choices = pathlib.Path(sys.argv[2])
+    time = choices.with_name(choices.stem + "_time.png")
+    rows = read(sys.argv[1])
+    plot_choices(rows, choices)
+    plot_time(rows, time)
+    write_page(rows, choices, time, choices.with_suffix(".html"))
 
 
 main()

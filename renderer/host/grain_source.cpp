@@ -91,6 +91,34 @@ bool agree(const openvdb::Int32Grid& grain_id, const CellField& cells) {
     return 50 * different <= compared;
 }
 
+float median(std::vector<float> values) {
+    if (values.empty()) return 0.0f;
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Rounding of the walk over the size of a grain above which boundaries are visibly elsewhere.
+constexpr float noted_rounding = 0.01f;
+/// Voxels across a grain below which much of the light's way lies in the wrong grain.
+constexpr float few_voxels = 6.0f;
+
+void note_rounding(const std::string& file, float rounding_mm, float size_mm, std::vector<std::string>& notices) {
+    if (rounding_mm > noted_rounding * size_mm)
+        notices.push_back(
+            fmt::format("{}: the opal lies so far from the origin of its file that rounding moves the boundaries of its "
+                        "grains, {:.2g} mm across, by up to {:.1g} mm; model it nearer to the origin",
+                        file, size_mm, 2.5f * rounding_mm));
+}
+
+void note_coarse_voxels(const std::string& file, float voxel_mm, float size_mm, std::vector<std::string>& notices) {
+    if (size_mm < few_voxels * voxel_mm)
+        notices.push_back(
+            fmt::format("{}: grains are only {:.2g} voxels across, and as coarse as that in the picture; smaller voxels, "
+                        "or sites in the file, show them as they are",
+                        file, size_mm / voxel_mm));
+}
+
 }  // namespace
 
 GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::string& file, std::vector<std::string>& notices)
@@ -104,6 +132,11 @@ GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::st
     if (method_ == GrainMethod::voxels) voxels_ = std::make_unique<GrainGridData>(*asset.grain_id);
     sizes_mm_ = asset.grain_id ? grain_sizes_mm(*asset.grain_id, asset.num_grains())
                                : grain_sizes_mm(cells_->field(), *asset.shape, asset.num_grains());
+    const float size_mm = median(sizes_mm_);
+    if (cells_)
+        note_rounding(file, cells_->field().rounding_mm, size_mm, notices);
+    else
+        note_coarse_voxels(file, float(asset.grain_id->voxelSize().x()), size_mm, notices);
 }
 
 GrainsView GrainSource::view() const {

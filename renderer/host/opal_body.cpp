@@ -84,6 +84,11 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     OpalView& opal = view_;
     opal.diffraction = transport_model(settings.diffraction);
     opal.ewald_tolerance = float(settings.ewald_tolerance);
+    if (opal.diffraction == Diffraction::ewald_fresnel)
+        notices.push_back(
+            fmt::format("{}: what \"ewald-fresnel\" reflects is in proportion to opal.ewald_tolerance = {:.3g}, which "
+                        "nothing fixes: for comparison alone",
+                        file, settings.ewald_tolerance));
     opal.max_odds = float(settings.max_odds);
     if (object.exact && asset.bezier_patches.empty())
         throw InputError(file + ": has no Bezier patches, which exact = true asks for; shapes of kind \"bezier\" have them");

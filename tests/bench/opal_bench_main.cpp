@@ -20,6 +20,8 @@
 #include "modeler_bench.h"
 #include "pareto/pareto_bench.h"
 #include "pareto/shots_bench.h"
+#include "scaling_bench.h"
+#include "stability_bench.h"
 
 namespace {
 
@@ -92,6 +94,14 @@ int run_bench(int argc, char** argv) {
         app.add_subcommand("bvh", "rays against triangles and patches: devices' hierarchy and Embree (a minute)");
     bvh->add_option("-o,--output", arguments.folder, "folder for bvh.csv")->required()->type_name("DIR");
     bvh->add_option("--rays", arguments.rays, "over all scenes")->check(CLI::Range(1000, 1 << 30))->capture_default_str();
+    CLI::App* const stability = app.add_subcommand("stability", "where each method degrades, and how (some minutes)");
+    stability->add_option("-o,--output", arguments.folder, "folder for stability.csv and its chart")
+        ->required()
+        ->type_name("DIR");
+    stability->add_flag("--quick", arguments.quick, "fewer samples and places (under a minute)");
+    CLI::App* const scaling = app.add_subcommand("scaling", "cost against size, with fitted exponents (some minutes)");
+    scaling->add_option("-o,--output", arguments.folder, "folder for the .csv files and the chart")->required()->type_name("DIR");
+    scaling->add_flag("--quick", arguments.quick, "small sizes alone (under a minute)");
     CLI::App* const media = app.add_subcommand("media", "flights through fields: majorants and estimators (about a minute)");
     media->add_option("-o,--output", arguments.folder, "folder for media.csv")->required()->type_name("DIR");
     CLI::App* const color = app.add_subcommand("color", "ways from colours to spectra: round trips, products (some seconds)");
@@ -130,6 +140,14 @@ int run_bench(int argc, char** argv) {
     }
     if (color->parsed()) {
         opal::bench_color(arguments.folder);
+        return 0;
+    }
+    if (stability->parsed()) {
+        opal::bench_stability(arguments.folder, arguments.quick);
+        return 0;
+    }
+    if (scaling->parsed()) {
+        opal::bench_scaling(arguments.folder, arguments.quick);
         return 0;
     }
     if (grains->parsed()) return run_grains(arguments.folder, arguments.quick);
