@@ -24,7 +24,9 @@ TimedRender timed_render(const std::string& scene_toml, int samples, int threads
     Film film(scene.render.width, scene.render.height, scene.film.spectral, film_white(scene.film));
     tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
     const double begin = processor_seconds();
-    arena.execute([&] { result.outcome = render_cpu(host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {}); });
+    arena.execute([&] {
+        result.outcome = render_picture(host, intersector, {samples, 0.0}, film, [](const RenderProgress&) {});
+    });
     result.processor_s = processor_seconds() - begin;
     result.image = film.to_image();
     const double pixels = double(film.width()) * film.height();

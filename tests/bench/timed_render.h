@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/cpu/render_cpu.h"
+#include "renderer/cpu/render_picture.h"
 
 namespace opal {
 
