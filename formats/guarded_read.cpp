@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,6 +22,8 @@ constexpr int crash_signals[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
 
 /// A crash leaves neither a file of memory nor words of a library's insides behind.
 void crash_in_silence() {
+    // Where this process is ended while it waits, so is its child.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const rlimit none = {0, 0};
     ::setrlimit(RLIMIT_CORE, &none);
     if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {

@@ -86,7 +86,7 @@ TEST_P(LightsInScenes, BothWaysOfFindingLightAgree) {
 }
 
 /// The camera sees a light as bright as it is, in its colour; one that it is not to see it looks through; the back is black.
-TEST_P(LightsInScenesLoop, CameraSeesLights) {
+TEST_P(LightsInScenes, CameraSeesLights) {
     const auto look = [&](const std::string& light) {
         return render_text(
             "[render]\nwidth = 8\nheight = 8\nsampler = \"independent\"\n[environment]\nkind = \"constant\"\n"

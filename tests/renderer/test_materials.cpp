@@ -39,7 +39,7 @@ TEST_P(Materials, GlassIsInvisible) {
         expect_invisible(GetParam(), ball(std::string("kind = \"dielectric\"\n") + glass), 200, 0.006);
 }
 
-TEST_P(MaterialsLoop, ScatteringGlassIsInvisible) {
+TEST_P(Materials, ScatteringGlassIsInvisible) {
     expect_invisible(GetParam(),
                      ball("kind = \"dielectric\"\nroughness = 0.2\nmedium = { sigma_s_per_mm = 0.4, asymmetry = 0.6 }\n"), 80,
                      0.006);
