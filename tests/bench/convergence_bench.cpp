@@ -65,7 +65,7 @@ struct ErrorRow {
 
 /// Mean over the pixels of the mean square error over (squared luminance + 1 % of its mean over the pixels). Estimates have no
 /// bias, so that their variance between seeds is their mean square error; the standard errors are those of means of 16 groups of
-/// pixels. `luminance`: of the pixels, from all renders together.
+/// pixels. `luminance`: of the pixels, from renders of their own.
 ErrorRow error_row(const std::vector<PixelSums>& pixels, const std::vector<double>& luminance) {
     constexpr std::size_t groups = 16;
     double mean_square = 0.0;
@@ -100,7 +100,7 @@ struct Measured {
 };
 
 Measured measure(const std::filesystem::path& scene_file, const std::filesystem::path& opal, const Setting& setting, int width,
-                 int samples) {
+                 int samples, std::uint64_t first_seed = 1000) {
     const SceneDescription description = read_scene(
         scene_file, {"object.0.file='" + opal.string() + "'", fmt::format("render.width={}", width),
                      fmt::format("render.height={}", width * 3 / 4), "render.sampler=" + setting.sampler,
@@ -119,7 +119,7 @@ Measured measure(const std::filesystem::path& scene_file, const std::filesystem:
         tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t p) {
             for (int seed = 0; seed < num_seeds; ++seed) {
                 SceneView view = guides.scene();
-                view.seed = 1000 + std::uint64_t(seed);
+                view.seed = first_seed + std::uint64_t(seed);
                 for (int sample = done; sample < end; ++sample) {
                     const Opponent found = trace(view, intersector, pixels[p], std::uint32_t(sample));
                     for (std::size_t k = 0; k < 3; ++k) sums[p][std::size_t(seed)][k] += found[k];
@@ -142,12 +142,11 @@ Measured measure(const std::filesystem::path& scene_file, const std::filesystem:
     return measured;
 }
 
-/// The curve of errors of every setting.
-std::vector<std::vector<ErrorRow>> error_curves(const std::vector<Measured>& all) {
-    std::vector<double> luminance(all.front().pixels.front().size(), 0.0);
-    for (const Measured& measured : all)
-        for (std::size_t p = 0; p < luminance.size(); ++p)
-            luminance[p] += measured.pixels.back()[p].sum[0] / double(num_seeds * all.size());
+/// The curve of errors of every setting. `reference`: drawn with other seeds than any of them; pictures that are weighted by
+/// their own noise seem quieter than others.
+std::vector<std::vector<ErrorRow>> error_curves(const std::vector<Measured>& all, const Measured& reference) {
+    std::vector<double> luminance;
+    for (const PixelSums& pixel : reference.pixels.back()) luminance.push_back(pixel.sum[0] / num_seeds);
     std::vector<std::vector<ErrorRow>> curves;
     for (const Measured& measured : all) {
         curves.emplace_back();
@@ -194,7 +193,8 @@ void bench_convergence(const std::filesystem::path& folder, bool quick) {
         std::vector<Measured> measured;
         for (const Setting& setting : settings)
             measured.push_back(measure(example / "scene.toml", opal, setting, width, samples));
-        const std::vector<std::vector<ErrorRow>> errors = error_curves(measured);
+        const Measured reference = measure(example / "scene.toml", opal, settings[1], width, 2 * samples, 2000);
+        const std::vector<std::vector<ErrorRow>> errors = error_curves(measured, reference);
         const ErrorRow& last = errors.front().back();
         for (std::size_t i = 0; i < settings.size(); ++i) {
             for (const ErrorRow& row : errors[i])

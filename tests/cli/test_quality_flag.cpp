@@ -23,7 +23,7 @@ class QualityFlag : public testing::Test {
     std::string rendered(const std::string& flags) const {
         const ProgramResult result = run_program(opal_render + " " + at("scene.toml") + " -o " + at("a.exr") + " " + flags);
         EXPECT_EQ(result.exit_code, 0) << result.err;
-        return read_exr(at("a.exr")).attributes.at("opal:scene");
+        return read_image(at("a.exr")).attributes.at("opal:scene");
     }
 
     ScratchFolder folder_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -98,7 +99,7 @@ void bench_shots(const std::filesystem::path& folder, bool quick) {
     AtomicFile file(folder / "shots.csv");
     std::ofstream csv(file.temporary_path());
     csv << "shot,model,build_s,file_bytes,memory_bytes,load_s,processor_us_per_sample,samples_per_patch,squared_lab_difference,"
-           "squared_lab_se,ciede2000_p95_models,ciede2000_p95_noise\n";
+           "squared_lab_se,ciede2000_p95\n";
     OpalBuilds builds(folder / "shot_opals");
     const ParetoScene example = pareto_scenes(OPAL_EXAMPLES, OPAL_BENCH_BLOCK, true).front();
     const double exposure = std::exp2(0.8);  // the scene's
@@ -107,38 +108,38 @@ void bench_shots(const std::filesystem::path& folder, bool quick) {
         ParetoScene scene = example;
         scene.scene = std::filesystem::absolute(folder) / (shot.name + ".toml");
         write_text_file(scene.scene, scene_to_toml(read_scene(example.scene, shot.camera)));
-        const ParetoVariant whole{"shots", "whole", {fmt::format("grains.voxel_size_mm={}", scene.longest_mm / 512)}, {}};
-        ParetoVariant fitted{"shots", "--for, 3 pixels", {}, {}};
-        fitted.for_pixels = "3";
-        const OpalBuild whole_opal = builds.build(scene, whole), fitted_opal = builds.build(scene, fitted);
-        const auto settings = [](const OpalBuild& opal) {
-            return std::vector<std::string>{"object.0.file='" + opal.file.string() + "'", "render.filter=box"};
-        };
-        Subject whole_subject(scene.scene, settings(whole_opal), SpectralChoice::continuous);
-        Subject fitted_subject(scene.scene, settings(fitted_opal), SpectralChoice::continuous);
-        const DrawnPatches drawn = spread(whole_subject.pixels(), whole_subject.width(), shot);
+        std::vector<ParetoVariant> models = {
+            {"shots", "whole", {fmt::format("grains.voxel_size_mm={}", scene.longest_mm / 512)}, {}},
+            {"shots", "--for, 1 pixel", {}, {}},
+            {"shots", "--for, 3 pixels", {}, {}}};
+        models[1].for_pixels = "1";
+        models[2].for_pixels = "3";
+        std::vector<std::unique_ptr<Subject>> subjects;
+        for (const ParetoVariant& model : models)
+            subjects.push_back(std::make_unique<Subject>(
+                scene.scene,
+                std::vector<std::string>{"object.0.file='" + builds.build(scene, model).file.string() + "'", "render.filter=box"},
+                SpectralChoice::continuous));
+        const DrawnPatches drawn = spread(subjects.front()->pixels(), subjects.front()->width(), shot);
         const int patch_pixels = shot.patch_edge * shot.patch_edge;
-        const int samples = std::max(1, (quick ? 512 : 8192) / patch_pixels);
+        const int samples = std::max(1, (quick ? 512 : 4096) / patch_pixels);
         for (int seed = 0; seed < num_seeds; ++seed)
-            for (Subject* const subject : {&whole_subject, &fitted_subject})
-                subject->draw(drawn.pixels, samples, 7000 + std::uint64_t(seed));
-        const SeedPictures a = patch_means(whole_subject.pictures(), drawn.patches),
-                           b = patch_means(fitted_subject.pictures(), drawn.patches);
+            for (const auto& subject : subjects) subject->draw(drawn.pixels, samples, 7000 + std::uint64_t(seed));
+        const SeedPictures whole = patch_means(subjects.front()->pictures(), drawn.patches);
         const std::vector<double> weights(drawn.patches.size(), 1.0 / double(drawn.patches.size()));
-        const Estimate difference = squared_bias(shown(a, exposure), shown(b, exposure), weights);
-        const double models = percentile_95(mean_over(a, 0, num_seeds / 2), mean_over(b, num_seeds / 2, num_seeds), exposure);
-        const double noise = percentile_95(mean_over(a, 0, num_seeds / 2), mean_over(a, num_seeds / 2, num_seeds), exposure);
-        const auto line = [&](const ParetoVariant& variant, const OpalBuild& opal, const Subject& subject) {
-            return fmt::format("{},\"{}\",{:.3g},{},{},{:.3g},{:.4g},{}", shot.name, variant.name, opal.processor_s, opal.bytes,
-                               subject.memory_bytes(), subject.load_s(), 1e6 * mean_of(subject.sample_s()).value,
-                               samples * patch_pixels * num_seeds);
-        };
-        const std::string of_whole = line(whole, whole_opal, whole_subject) + ",,,,";
-        const std::string of_fitted =
-            line(fitted, fitted_opal, fitted_subject) +
-            fmt::format(",{:.4g},{:.2g},{:.3g},{:.3g}", difference.value, difference.standard_error, models, noise);
-        csv << of_whole << '\n' << of_fitted << '\n';
-        fmt::print("{}\n{}\n", of_whole, of_fitted);
+        const std::vector<Opponent> first = mean_over(whole, 0, num_seeds / 2);
+        for (std::size_t i = 0; i < models.size(); ++i) {
+            const OpalBuild& opal = builds.build(scene, models[i]);
+            const SeedPictures patches = patch_means(subjects[i]->pictures(), drawn.patches);
+            const Estimate difference = squared_bias(shown(patches, exposure), shown(whole, exposure), weights);
+            const std::string line = fmt::format("{},\"{}\",{:.3g},{},{},{:.3g},{:.4g},{},{:.4g},{:.2g},{:.3g}", shot.name,
+                                                 models[i].name, opal.processor_s, opal.bytes, subjects[i]->memory_bytes(),
+                                                 subjects[i]->load_s(), 1e6 * mean_of(subjects[i]->sample_s()).value,
+                                                 samples * patch_pixels * num_seeds, difference.value, difference.standard_error,
+                                                 percentile_95(first, mean_over(patches, num_seeds / 2, num_seeds), exposure));
+            csv << line << '\n';
+            fmt::print("{}\n", line);
+        }
         std::fflush(stdout);
         std::filesystem::remove(scene.scene);
     }

@@ -10,8 +10,9 @@ namespace opal {
 /// Writes folder/shots.csv: what building, keeping, loading and drawing cost, and how far apart the two pictures are.
 ///
 /// Colours are those of patches of the gem, 16 pixels on a side (4 from afar), as the picture shows them (the scene's exposure),
-/// in CIELAB under D65. What the two models' pictures converge to is told apart from noise by eight seeds; beside it stands what
-/// an eye would compare: CIEDE2000 of two pictures, of both models, and of the whole model with other random numbers.
+/// in CIELAB under D65. What the models' pictures converge to is told apart from noise by eight seeds; beside it stands what an
+/// eye would compare: the 95th percentile of CIEDE2000 against the whole model drawn with other random numbers, for the whole
+/// model too.
 void bench_shots(const std::filesystem::path& folder, bool quick);
 
 }  // namespace opal
