@@ -98,6 +98,15 @@ float median(std::vector<float> values) {
     return *middle;
 }
 
+/// Grains that labels name but no voxel, or one, shows are not what a picture is made of; all where there are no others.
+std::vector<float> larger_than_a_voxel(const std::vector<float>& sizes_mm, float voxel_mm) {
+    std::vector<float> larger;
+    // A ball as large as one voxel is 1.24 voxels across.
+    for (const float size_mm : sizes_mm)
+        if (size_mm > 1.3f * voxel_mm) larger.push_back(size_mm);
+    return larger.empty() ? sizes_mm : larger;
+}
+
 /// Rounding of the walk over the size of a grain above which boundaries are visibly elsewhere.
 constexpr float noted_rounding = 0.01f;
 /// Voxels across a grain below which much of the light's way lies in the wrong grain.
@@ -132,11 +141,12 @@ GrainSource::GrainSource(const OpalAsset& asset, GrainsKind asked, const std::st
     if (method_ == GrainMethod::voxels) voxels_ = std::make_unique<GrainGridData>(*asset.grain_id);
     sizes_mm_ = asset.grain_id ? grain_sizes_mm(*asset.grain_id, asset.num_grains())
                                : grain_sizes_mm(cells_->field(), *asset.shape, asset.num_grains());
-    const float size_mm = median(sizes_mm_);
-    if (cells_)
-        note_rounding(file, cells_->field().rounding_mm, size_mm, notices);
-    else
-        note_coarse_voxels(file, float(asset.grain_id->voxelSize().x()), size_mm, notices);
+    if (cells_) {
+        note_rounding(file, cells_->field().rounding_mm, median(sizes_mm_), notices);
+    } else {
+        const float voxel_mm = float(asset.grain_id->voxelSize().x());
+        note_coarse_voxels(file, voxel_mm, median(larger_than_a_voxel(sizes_mm_, voxel_mm)), notices);
+    }
 }
 
 GrainsView GrainSource::view() const {
