@@ -28,6 +28,14 @@ std::string build_command(const std::string& program, const ParetoScene& scene, 
 
 }  // namespace
 
+ParetoScene in_project(const ParetoScene& scene) {
+    const std::filesystem::path root = std::filesystem::path(OPAL_EXAMPLES).parent_path();
+    ParetoScene relative = scene;
+    relative.recipe = scene.recipe.lexically_proximate(root);
+    relative.scene = scene.scene.lexically_proximate(root);
+    return relative;
+}
+
 OpalBuilds::OpalBuilds(std::filesystem::path folder) : folder_(std::filesystem::absolute(folder)) {
     std::filesystem::create_directories(folder_);
 }
@@ -38,7 +46,7 @@ OpalBuilds::~OpalBuilds() {
 }
 
 std::string OpalBuilds::command(const ParetoScene& scene, const ParetoVariant& variant) {
-    return build_command("opal-model", scene, variant, scene.name + ".vdb");
+    return build_command("opal-model", in_project(scene), variant, scene.name + ".vdb");
 }
 
 const OpalBuild& OpalBuilds::build(const ParetoScene& scene, const ParetoVariant& variant) {

@@ -17,6 +17,9 @@ struct OpalBuild {
     double processor_s = 0.0;
 };
 
+/// The scene with its files as they are called from the project's folder.
+ParetoScene in_project(const ParetoScene& scene);
+
 /// Builds opals with the program itself, each once; removes them in the end.
 class OpalBuilds {
   public:

@@ -40,8 +40,8 @@ std::vector<std::string> scene_settings(const ParetoVariant& variant, const std:
 
 std::string render_command(const ParetoScene& scene, const ParetoVariant& variant) {
     if (variant.spectral != SpectralChoice::continuous) return "opal-bench pareto (fixed wavelengths are there alone)";
-    std::string text =
-        fmt::format("opal-render '{}' -o {}.exr --set object.0.file={}.vdb", scene.scene.string(), scene.name, scene.name);
+    std::string text = fmt::format("opal-render '{}' -o {}.exr --set object.0.file={}.vdb", in_project(scene).scene.string(),
+                                   scene.name, scene.name);
     for (const std::string& assignment : variant.scene) text += fmt::format(" --set '{}'", assignment);
     return text;
 }
