@@ -12,8 +12,8 @@ namespace opal {
 /// patches as large as a grain, apart from the noise of pixels. Writes folder/pareto.csv. Quick: two of the scenes, fewer values,
 /// coarser statistics. `only`: names of choices or scenes, where not all are wanted.
 ///
-/// The gem is seen 40 x 30 pixels large ; every variant draws the same numbers with the
-/// same eight seeds, so that what two variants have in common is noise in common.
+/// Pictures are 40 x 30 pixels; every variant draws the same numbers with the same eight seeds, so that what two variants have in
+/// common is noise in common.
 void bench_pareto(const std::filesystem::path& folder, bool quick, const std::vector<std::string>& only = {});
 
 }  // namespace opal
