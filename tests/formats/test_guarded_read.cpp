@@ -13,6 +13,9 @@
 #include "expect_error.h"
 #include "formats/opal_asset.h"
 #include "formats/opal_asset_io.h"
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
 namespace opal {
 namespace {
@@ -35,6 +38,10 @@ TEST(GuardedRead, WhatItDoesIsLost) {
 /// compressed blocks: a result or an error, of this process no crash.
 TEST(GuardedRead, DamagedFilesOfOtherPrograms) {
     initialize_openvdb();
+#ifdef __SANITIZE_ADDRESS__
+    // OpenVDB loses the nodes that it was reading where a read fails.
+    const __lsan::ScopedDisabler openvdb_leaks;
+#endif
     const std::string path = (std::filesystem::temp_directory_path() / ("opal_guarded_" + std::to_string(::getpid()))).string();
     const auto grid = openvdb::FloatGrid::create(0.0f);
     grid->setName("density");
