@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Measures speed against accuracy, failures and scaling, and draws the charts that docs/ shows: most of an hour on two cores,
-# with --quick some minutes.
+# Measures speed against accuracy, failures and scaling, and draws the charts that docs/ shows: expect most of an
+# hour on two cores, with --quick some minutes.
 # usage: scripts/charts.sh [--quick] [FOLDER]     (FOLDER: docs/charts without --quick, out/charts with it)
 set -eu
 cd "$(dirname "$0")/.."
