@@ -21,12 +21,13 @@ const std::vector<std::string> sampler_names = {"sobol", "stratified", "independ
 const std::vector<std::string> light_sampling_names = {"both", "connections", "scattering"};
 const std::vector<std::string> filter_names = {"tent", "box", "gaussian", "blackman-harris"};
 const std::vector<std::string> camera_names = {"perspective", "orthographic"};
-const std::vector<std::string> environment_names = {"studio", "constant", "file"};
+const std::vector<std::string> environment_names = {"studio", "constant", "file", "tent"};
 const std::vector<std::string> illuminant_names = {"D65", "A", "E", "blackbody", "led", "file"};
 const std::vector<std::string> upsampling_names = {"jakob-hanika", "smits", "basis"};
 const std::vector<std::string> diffraction_names = {"two-beam", "ewald-fresnel", "laue", "none"};
 const std::vector<std::string> dispersion_names = {"full", "bands", "none"};
 const std::vector<std::string> majorant_names = {"local", "global"};
+const std::vector<std::string> tracking_names = {"residual", "ratio"};
 const std::vector<std::string> grains_names = {"auto", "cells", "voxels", "sphere-tracing", "hyperboloid"};
 
 std::optional<PixelWindow> read_crop(TomlSection& section, int width, int height) {
@@ -140,6 +141,7 @@ OpalDescription read_opal(TomlSection section) {
     opal.max_odds = section.number("max_odds", opal.max_odds, NumberRange::between(1.0, 1.0e6));
     opal.dispersion = enum_choice(section, "dispersion", opal.dispersion, dispersion_names);
     opal.majorants = enum_choice(section, "majorants", opal.majorants, majorant_names);
+    opal.tracking = enum_choice(section, "tracking", opal.tracking, tracking_names);
     opal.companions = static_cast<int>(section.integer("companions", opal.companions, 0, 7));
     section.finish();
     return opal;
@@ -210,10 +212,10 @@ std::string scene_to_toml(const SceneDescription& scene) {
         text += fmt::format("temperature_k = {}\n", scene.environment.temperature_k);
     text += fmt::format(
         "\n[opal]\ndiffraction = \"{}\"\newald_tolerance = {}\nmax_odds = {}\ndispersion = \"{}\"\nmajorants = \"{}\"\n"
-        "grains = \"{}\"\ncompanions = {}\n",
+        "tracking = \"{}\"\ngrains = \"{}\"\ncompanions = {}\n",
         name(diffraction_names, scene.opal.diffraction), scene.opal.ewald_tolerance, scene.opal.max_odds,
         name(dispersion_names, scene.opal.dispersion), name(majorant_names, scene.opal.majorants),
-        name(grains_names, scene.opal.grains), scene.opal.companions);
+        name(tracking_names, scene.opal.tracking), name(grains_names, scene.opal.grains), scene.opal.companions);
     for (const MaterialDescription& material : scene.materials) text += material_to_toml(material);
     for (const ObjectDescription& object : scene.objects) text += object_to_toml(object);
     for (const LightDescription& light : scene.lights) text += light_to_toml(light);

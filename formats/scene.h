@@ -16,13 +16,16 @@ enum class SamplerKind { sobol, stratified, independent };
 enum class LightSamplingKind { both, connections, scattering };
 enum class FilterKind { tent, box, gaussian, blackman_harris };
 enum class CameraKind { perspective, orthographic };
-enum class EnvironmentKind { studio, constant, file };
+enum class EnvironmentKind { studio, constant, file, tent };
 enum class IlluminantKind { d65, a, equal_energy, blackbody, led, file };
 enum class Upsampling { jakob_hanika, smits, basis };
 enum class DiffractionModel { two_beam, ewald_fresnel, laue, none };
 enum class Dispersion { full, bands, none };
 enum class LightKind { area, sphere, spot, sun };
 enum class MajorantKind { local, global };
+/// Through coefficients that vary. residual: what is least everywhere in a cell in closed form, only the rest collides; ratio:
+/// all of it collides.
+enum class TrackingKind { residual, ratio };
 enum class GrainsKind { automatic, cells, voxels, sphere_tracing, hyperboloid };
 /// How the PNG shows linear light: filmic has a shoulder for highlights, srgb is the plain encoding, cut at 1, none leaves the
 /// values linear, cut at 1.
@@ -116,6 +119,7 @@ struct OpalDescription {
     Dispersion dispersion =
         Dispersion::full;  ///< full: bands and refraction; bands: diffraction alone; none: indices at 589.3 nm
     MajorantKind majorants = MajorantKind::local;
+    TrackingKind tracking = TrackingKind::residual;
     GrainsKind grains =
         GrainsKind::automatic;  ///< automatic: cells where the file's sites describe the grains exactly, else voxels
     int companions = 3;         ///< wavelengths that travel with the hero, 0 to 7

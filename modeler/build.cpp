@@ -179,8 +179,9 @@ BuiltOpal build_opal(const Recipe& asked_for, const BuildListener& listener, con
 
     const auto shape = stages.run("shape", [&] { return make_shape(recipe.shape); });
     if (scene_fit)
-        report.scene_needs =
-            fit_to_scene(recipe, scene_fit->scene, scene_fit->output, shape->bounds_mm(), scene_fit->accepted_error_pixels);
+        report.scene_needs = stages.run("scene_needs", [&] {
+            return fit_to_scene(recipe, scene_fit->scene, scene_fit->output, *shape, scene_fit->accepted_error_pixels);
+        });
     built.output = recipe.output;
     const SampledSpectrum sigma_s_mie_shape = resolve_defects(recipe);
     describe_origin(recipe, sigma_s_mie_shape, asset);

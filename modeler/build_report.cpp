@@ -112,7 +112,7 @@ std::string report_summary(const BuildReport& report, const OpalAsset& asset) {
             100.0 * static_cast<double>(report.voxels) / static_cast<double>(std::max<std::uint64_t>(1, report.voxels_in_box)),
             report.leaves, report.tiles);
     else
-        text += "voxels   none: sites alone\n";
+        text += "voxels   no labels: grains are in the sites alone\n";
     if (report.scene_needs) text += scene_needs_summary(*report.scene_needs);
     text += fmt::format("time     {}, at most {:.0f} MB of memory\n", format_duration(report.total_seconds()),
                         static_cast<double>(peak_memory_bytes()) / 1.0e6);

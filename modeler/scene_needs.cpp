@@ -11,14 +11,20 @@
 #include "formats/spectrum.h"
 #include "formats/units.h"
 #include "modeler/defect_scattering.h"
+#include "modeler/surface_needs.h"
 
 namespace opal {
 namespace {
 
 /// Half an 8-bit step of white.
 constexpr double invisible_change = 0.5 / 255.0;
-/// Along the longest side, as few as a recipe may ask for.
-constexpr double fewest_voxels = 4.0;
+/// Of a voxel: from its centre to its corner.
+const double half_diagonal = 0.5 * std::sqrt(3.0);
+/// Along the longest side: below, the gem's own light changes, however few pixels it takes (docs/speed-and-accuracy.md).
+constexpr double fewest_voxels = 32.0;
+/// Where only the surface takes voxels, and pixels could show more of it than its curvature needs: along the longest side, and
+/// along the shortest.
+constexpr double fewest_of_long_surface = 64.0, fewest_of_thin_surface = 16.0;
 /// Part of space that touching spheres fill in fcc packing.
 const double fcc_fill = units::pi / (3.0 * std::sqrt(2.0));
 
@@ -48,32 +54,61 @@ openvdb::Vec3d rotated(openvdb::Vec3d v, const std::array<double, 3>& rotate_deg
     return v;
 }
 
-/// Depth before the camera of the nearest corner of the gem's box, in the scene's millimetres.
-double nearest_depth_mm(const CameraDescription& camera, const ObjectDescription& opal, const openvdb::BBoxd& bounds_mm) {
-    const openvdb::Vec3d position_mm(camera.position_mm.data());
-    const openvdb::Vec3d forward = (openvdb::Vec3d(camera.target_mm.data()) - position_mm).unitSafe();
-    double nearest_mm = std::numeric_limits<double>::infinity();
-    for (int corner = 0; corner < 8; ++corner) {
-        openvdb::Vec3d point_mm;
-        for (int axis = 0; axis < 3; ++axis)
-            point_mm[axis] = (corner >> axis & 1) != 0 ? bounds_mm.max()[axis] : bounds_mm.min()[axis];
-        const openvdb::Vec3d world_mm =
-            rotated(point_mm * opal.scale, opal.rotate_deg) + openvdb::Vec3d(opal.translate_mm.data());
-        nearest_mm = std::min(nearest_mm, (world_mm - position_mm).dot(forward));
-    }
-    return nearest_mm;
-}
+/// What a scene's camera sees of the opal's own space.
+class PictureView {
+  public:
+    PictureView(const SceneDescription& scene, const ObjectDescription& opal)
+        : camera_(scene.camera),
+          opal_(opal),
+          position_mm_(scene.camera.position_mm.data()),
+          forward_((openvdb::Vec3d(scene.camera.target_mm.data()) - position_mm_).unitSafe()),
+          right_(forward_.cross(openvdb::Vec3d(scene.camera.up.data())).unitSafe()),
+          half_width_(0.5 * scene.render.width / scene.render.height),
+          height_px_(scene.render.height) {}
 
-/// Edge of a pixel's share of the picture at the gem; 0 where the camera is in the gem's box.
-double pixel_footprint_mm(const SceneDescription& scene, const ObjectDescription& opal, const openvdb::BBoxd& bounds_mm) {
-    const CameraDescription& camera = scene.camera;
-    double picture_height_mm = camera.view_height_mm;
-    if (camera.kind == CameraKind::perspective) {
-        const double depth_mm = nearest_depth_mm(camera, opal, bounds_mm);
-        picture_height_mm = 2.0 * std::max(0.0, depth_mm) * std::tan(0.5 * units::rad_from_deg(camera.vertical_fov_deg));
+    /// Edge of a pixel's share of the picture at the point of the gem's box that is nearest to the camera, in the opal's mm; 0
+    /// where the camera is in the box.
+    double nearest_footprint_mm(const openvdb::BBoxd& bounds_mm) const {
+        double nearest_mm = std::numeric_limits<double>::infinity();
+        for (int corner = 0; corner < 8; ++corner) {
+            openvdb::Vec3d point_mm;
+            for (int axis = 0; axis < 3; ++axis)
+                point_mm[axis] = (corner >> axis & 1) != 0 ? bounds_mm.max()[axis] : bounds_mm.min()[axis];
+            nearest_mm = std::min(nearest_mm, from_camera_mm(point_mm).dot(forward_));
+        }
+        return footprint_mm(nearest_mm);
     }
-    return picture_height_mm / scene.render.height / opal.scale;
-}
+
+    /// The same at a point of the opal; infinite where that is not in the picture.
+    double footprint_in_picture_mm(const openvdb::Vec3d& point_mm) const {
+        const openvdb::Vec3d offset_mm = from_camera_mm(point_mm);
+        const double depth_mm = offset_mm.dot(forward_);
+        const double half_height_mm = (0.5 + picture_margin) * picture_height_mm(depth_mm);
+        const bool beside = std::abs(offset_mm.dot(right_)) > 2.0 * half_width_ * half_height_mm ||
+                            std::abs(offset_mm.dot(right_.cross(forward_))) > half_height_mm;
+        return depth_mm <= 0.0 || beside ? std::numeric_limits<double>::infinity() : footprint_mm(depth_mm);
+    }
+
+  private:
+    /// Seen, for what lies beside the picture by this part of its height: a lens out of focus, a filter's reach.
+    static constexpr double picture_margin = 0.05;
+
+    openvdb::Vec3d from_camera_mm(const openvdb::Vec3d& point_mm) const {
+        return rotated(point_mm * opal_.scale, opal_.rotate_deg) + openvdb::Vec3d(opal_.translate_mm.data()) - position_mm_;
+    }
+
+    double picture_height_mm(double depth_mm) const {
+        if (camera_.kind != CameraKind::perspective) return camera_.view_height_mm;
+        return 2.0 * std::max(0.0, depth_mm) * std::tan(0.5 * units::rad_from_deg(camera_.vertical_fov_deg));
+    }
+
+    double footprint_mm(double depth_mm) const { return picture_height_mm(depth_mm) / height_px_ / opal_.scale; }
+
+    const CameraDescription& camera_;
+    const ObjectDescription& opal_;
+    const openvdb::Vec3d position_mm_, forward_, right_;
+    const double half_width_, height_px_;
+};
 
 void drop_field(FieldRecipe& field, const std::string& name, double coefficient_per_mm, double longest_path_mm,
                 SceneNeeds& needs) {
@@ -110,10 +145,10 @@ void drop_what_does_not_show(Recipe& recipe, bool walks_cells, double longest_pa
     drop_field(color.sigma_s_rayleigh_field, "sigma_s_rayleigh_field", color.sigma_s_rayleigh_400nm_per_mm * rayleigh_at_360nm,
                longest_path_mm, needs);
     drop_field(color.sigma_s_mie_field, "sigma_s_mie_field", strongest_mie_per_mm(recipe), longest_path_mm, needs);
+    needs.exact_grains = walks_cells;
     if (walks_cells && recipe.output.has(OutputGrid::grain_id)) {
         std::erase(recipe.output.grids, OutputGrid::grain_id);
         needs.dropped.push_back("grid grain_id: the grains are taken from the sites, exactly");
-        needs.exact_grains = true;
     }
     if (recipe.output.has(OutputGrid::weight)) {
         std::erase(recipe.output.grids, OutputGrid::weight);
@@ -125,32 +160,62 @@ void drop_what_does_not_show(Recipe& recipe, bool walks_cells, double longest_pa
     }
 }
 
+bool fields_vary(const Recipe& recipe) {
+    const BaseColorRecipe& color = recipe.base_color;
+    return recipe.output.has(OutputGrid::fields) &&
+           (color.sigma_a_field.kind != FieldKind::constant || color.sigma_s_rayleigh_field.kind != FieldKind::constant ||
+            color.sigma_s_mie_field.kind != FieldKind::constant);
+}
+
+/// Voxels as coarse as the surface allows, where nothing but the surface takes any.
+void follow_curvature(const SceneDescription& scene, const Shape& shape, const PictureView& view, double accepted_error_pixels,
+                      SceneNeeds& needs) {
+    const openvdb::Vec3d extents_mm = shape.bounds_mm().extents();
+    const double coarsest_mm = std::min(std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / fewest_of_long_surface,
+                                        std::min({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / fewest_of_thin_surface);
+    if (coarsest_mm <= needs.voxel_size_mm) return;
+    // Other frames may show any side of it.
+    const bool moves = scene.animation.frames > 1;
+    const SurfaceNeeds surface = coarsest_surface_voxels(
+        shape,
+        [&](const openvdb::Vec3d& point_mm) {
+            return accepted_error_pixels * (moves ? needs.pixel_footprint_mm : view.footprint_in_picture_mm(point_mm));
+        },
+        needs.voxel_size_mm, coarsest_mm);
+    needs.voxel_size_mm = surface.voxel_size_mm;
+    needs.surface_places = surface.places;
+    if (surface.error_over_accepted <= 1.0) {
+        needs.boundary_error_mm = surface.error_mm;
+        needs.boundary_error_pixels = surface.error_over_accepted * accepted_error_pixels;
+    }
+}
+
 }  // namespace
 
-SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std::filesystem::path& output,
-                        const openvdb::BBoxd& bounds_mm, double accepted_error_pixels) {
+SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std::filesystem::path& output, const Shape& shape,
+                        double accepted_error_pixels) {
     const ObjectDescription& opal = find_opal(scene, output);
-    const openvdb::Vec3d extents_mm = bounds_mm.extents();
+    const PictureView view(scene, opal);
+    const openvdb::Vec3d extents_mm = shape.bounds_mm().extents();
     const double longest_mm = std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()});
     SceneNeeds needs;
     needs.recipe_voxel_size_mm = recipe.resolution > 0 ? longest_mm / recipe.resolution : recipe.grains.voxel_size_mm;
-    needs.pixel_footprint_mm = pixel_footprint_mm(scene, opal, bounds_mm);
-    const double half_diagonal = 0.5 * std::sqrt(3.0);
-    if (needs.pixel_footprint_mm > 0.0) {
-        // A gem of a few pixels still is a gem.
+    needs.pixel_footprint_mm = view.nearest_footprint_mm(shape.bounds_mm());
+    drop_what_does_not_show(recipe, finds_grains_from_sites(recipe, scene.opal), extents_mm.length(), needs);
+    needs.voxel_size_mm = needs.recipe_voxel_size_mm;
+    if (needs.pixel_footprint_mm > 0.0)
         needs.voxel_size_mm =
             std::min(accepted_error_pixels * needs.pixel_footprint_mm / half_diagonal, longest_mm / fewest_voxels);
+    needs.boundary_error_mm = half_diagonal * needs.voxel_size_mm;
+    if (needs.pixel_footprint_mm > 0.0) {
+        needs.boundary_error_pixels = needs.boundary_error_mm / needs.pixel_footprint_mm;
+        if (needs.exact_grains && !fields_vary(recipe)) follow_curvature(scene, shape, view, accepted_error_pixels, needs);
         recipe.grains.voxel_size_mm = needs.voxel_size_mm;
         recipe.resolution = 0;
-    } else {
-        needs.voxel_size_mm = needs.recipe_voxel_size_mm;
     }
-    needs.boundary_error_mm = half_diagonal * needs.voxel_size_mm;
-    needs.boundary_error_pixels = needs.pixel_footprint_mm > 0.0 ? needs.boundary_error_mm / needs.pixel_footprint_mm : 0.0;
     const double n_eff =
         fcc_fill * recipe.crystal.n_sphere.at(sodium_d_nm) + (1.0 - fcc_fill) * recipe.crystal.n_medium.at(sodium_d_nm);
     needs.lens_magnification = n_eff < 2.0 ? n_eff / (2.0 - n_eff) : std::numeric_limits<double>::infinity();
-    drop_what_does_not_show(recipe, finds_grains_from_sites(recipe, scene.opal), extents_mm.length(), needs);
     return needs;
 }
 
@@ -164,6 +229,7 @@ nlohmann::json scene_needs_to_json(const SceneNeeds& needs) {
             {"boundary_error_pixels", needs.boundary_error_pixels},
             {"lens_magnification", needs.lens_magnification},
             {"exact_grains", needs.exact_grains},
+            {"surface_places", needs.surface_places},
             {"dropped", needs.dropped}};
 }
 
@@ -178,6 +244,9 @@ std::string scene_needs_summary(const SceneNeeds& needs) {
         needs.pixel_footprint_mm, needs.voxel_size_mm, ratio,
         needs.exact_grains ? "grains are exact; the surface is" : "grain boundaries are", needs.boundary_error_mm,
         needs.boundary_error_pixels, needs.boundary_error_pixels * needs.lens_magnification);
+    if (needs.surface_places > 0)
+        text +=
+            fmt::format("         voxels follow its curvature, looked at in {} places in the picture\n", needs.surface_places);
     for (const std::string& what : needs.dropped) text += fmt::format("         left out: {}\n", what);
     return text;
 }

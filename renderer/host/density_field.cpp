@@ -51,7 +51,7 @@ void require_upright(const openvdb::FloatGrid& grid, const std::string& file) {
 }  // namespace
 
 DensityField::DensityField(const MediumDescription& medium, const openvdb::BBoxd& bounds_mm, MajorantKind majorants,
-                           const std::array<double, num_medium_fields>& per_mm) {
+                           TrackingKind tracking, const std::array<double, num_medium_fields>& per_mm) {
     const std::string file = medium.density_file.string();
     const openvdb::FloatGrid::Ptr density = read_density(medium)->deepCopy();
     require_upright(*density, file);
@@ -72,8 +72,7 @@ DensityField::DensityField(const MediumDescription& medium, const openvdb::BBoxd
 
     data_ = std::make_unique<FieldGridData>(*density);
     const MediumFieldGrids grids = {density, nullptr, density};
-    majorants_ = std::make_unique<MajorantGrid>(
-        majorants == MajorantKind::global ? MajorantGrid(grids, bounds_mm, 1) : MajorantGrid::fitted(grids, bounds_mm, per_mm));
+    majorants_ = std::make_unique<MajorantGrid>(MajorantGrid::chosen(grids, bounds_mm, majorants, tracking, per_mm));
     const std::string name = density->getName();
     check_majorants(grids, majorants_->view(), {name.c_str(), name.c_str(), name.c_str()}, file);
 }

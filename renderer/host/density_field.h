@@ -19,7 +19,7 @@ class DensityField {
     /// `bounds_mm`: of the body, object space. `per_mm`: absorption and scattering per unit of density and object mm, for the
     /// size of the majorants' cells. Throws InputError for a file without such a grid, densities that are no numbers from 0, and
     /// grids that are rotated or have unequal voxel edges.
-    DensityField(const MediumDescription& medium, const openvdb::BBoxd& bounds_mm, MajorantKind majorants,
+    DensityField(const MediumDescription& medium, const openvdb::BBoxd& bounds_mm, MajorantKind majorants, TrackingKind tracking,
                  const std::array<double, num_medium_fields>& per_mm);
 
     /// Valid while this object lives.

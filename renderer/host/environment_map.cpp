@@ -19,14 +19,14 @@ struct Picture {
     std::vector<Rgb> texels;
 };
 
-Picture studio_picture() {
+Picture picture_of(Rgb (*radiance)(Vec3 direction)) {
     Picture map{1024, 512, std::vector<Rgb>(std::size_t(1024) * 512)};
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
             const double theta = units::pi * (y + 0.5) / map.height, phi = 2.0 * units::pi * (x + 0.5) / map.width;
             const Vec3 direction{float(std::sin(theta) * std::cos(phi)), float(std::sin(theta) * std::sin(phi)),
                                  float(std::cos(theta))};
-            map.texels[std::size_t(y) * map.width + x] = studio_radiance(direction);
+            map.texels[std::size_t(y) * map.width + x] = radiance(direction);
         }
     return map;
 }
@@ -103,10 +103,12 @@ Picture picture_of(const EnvironmentDescription& description, std::vector<std::s
             return constant_picture();
         case EnvironmentKind::file:
             return picture_from_file(description.file, notices);
+        case EnvironmentKind::tent:
+            return picture_of(tent_radiance);
         case EnvironmentKind::studio:
             break;
     }
-    return studio_picture();
+    return picture_of(studio_radiance);
 }
 
 /// Weight of each texel for drawing directions: the mean of its 3x3 neighbourhood, since bilinear lookup spreads it, times its

@@ -48,7 +48,7 @@ GlassBody::GlassBody(const ObjectDescription& object, const MaterialDescription&
     if (medium.density_file.empty()) return;
     const double scale = object.scale;
     density_ = std::make_unique<DensityField>(
-        medium, bounds_mm, settings.majorants,
+        medium, bounds_mm, settings.majorants, settings.tracking,
         std::array<double, num_medium_fields>{scale * visible_mean(sigma_a_per_mm_), 0.0, scale * visible_mean(sigma_s_per_mm_)});
     density_->attach(view_.medium);
 }

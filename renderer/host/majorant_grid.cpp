@@ -121,6 +121,21 @@ MajorantGrid MajorantGrid::fitted(const MediumFieldGrids& fields, const openvdb:
     return best;
 }
 
+MajorantGrid MajorantGrid::chosen(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm, MajorantKind majorants,
+                                  TrackingKind tracking, const std::array<double, num_medium_fields>& per_mm) {
+    const MajorantGrid grid =
+        majorants == MajorantKind::global ? MajorantGrid(fields, bounds_mm, 1) : fitted(fields, bounds_mm, per_mm);
+    return tracking == TrackingKind::ratio ? grid.without_least(fields) : grid;
+}
+
+MajorantGrid MajorantGrid::without_least(const MediumFieldGrids& fields) const {
+    MajorantGrid result = *this;
+    for (MajorantCell& cell : result.cells_)
+        for (int field = 0; field < num_medium_fields; ++field)
+            if (fields[std::size_t(field)]) cell.min[field] = 0.0f;
+    return result;
+}
+
 void MajorantGrid::add_field(int field, const openvdb::FloatGrid& grid) {
     const auto add = [&](const CellRange& range, float low, float high) {
         for_each_cell(range, [&](int x, int y, int z) { widen(cells_[flat_index(geometry_.size, x, y, z)], field, low, high); });

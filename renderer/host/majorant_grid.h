@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/scene.h"
 #include "renderer/core/majorant_view.h"
 
 namespace opal {
@@ -28,10 +29,17 @@ class MajorantGrid {
     static MajorantGrid fitted(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm,
                                const std::array<double, num_medium_fields>& per_mm);
 
+    /// The grid that a scene's settings ask for: fitted or a single cell; its lower bounds 0 where what is least is not to be
+    /// split off.
+    static MajorantGrid chosen(const MediumFieldGrids& fields, const openvdb::BBoxd& bounds_mm, MajorantKind majorants,
+                               TrackingKind tracking, const std::array<double, num_medium_fields>& per_mm);
+
     /// From given cells.
     MajorantGrid(std::vector<MajorantCell> cells, const MajorantView& geometry);
 
     const std::vector<MajorantCell>& cells() const { return cells_; }
+    /// With lower bounds of 0 for the fields that vary: ratio tracking.
+    MajorantGrid without_least(const MediumFieldGrids& fields) const;
     /// Valid while this object stays where it is.
     MajorantView view() const;
 

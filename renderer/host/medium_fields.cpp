@@ -34,7 +34,8 @@ std::array<double, num_medium_fields> mean_per_mm(const OpalConstants& constants
 
 }  // namespace
 
-MediumFields::MediumFields(const OpalAsset& asset, MajorantKind majorants, double scale, const std::string& file)
+MediumFields::MediumFields(const OpalAsset& asset, MajorantKind majorants, double scale, const std::string& file,
+                           TrackingKind tracking)
     : constants_{1.0, asset.constants.sigma_s_rayleigh_400nm_per_mm, asset.constants.sigma_s_mie_per_mm} {
     const std::array<openvdb::FloatGrid::Ptr, num_medium_fields> given = {asset.sigma_a_scale, asset.sigma_s_rayleigh_400nm,
                                                                           asset.sigma_s_mie};
@@ -52,9 +53,8 @@ MediumFields::MediumFields(const OpalAsset& asset, MajorantKind majorants, doubl
     }
     if (data_.empty()) return;
     const openvdb::BBoxd bounds = bounds_mm(*asset.shape);
-    majorants_ = std::make_unique<MajorantGrid>(majorants == MajorantKind::global
-                                                    ? MajorantGrid(grids_, bounds, 1)
-                                                    : MajorantGrid::fitted(grids_, bounds, mean_per_mm(asset.constants, scale)));
+    majorants_ = std::make_unique<MajorantGrid>(
+        MajorantGrid::chosen(grids_, bounds, majorants, tracking, mean_per_mm(asset.constants, scale)));
     check_majorants(grids_, majorants_->view(), field_names, file);
 }
 

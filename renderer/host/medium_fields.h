@@ -19,7 +19,8 @@ namespace opal {
 class MediumFields {
   public:
     /// `scale`: world mm per object mm. Throws InputError (check_majorants). `file`: for messages.
-    MediumFields(const OpalAsset& asset, MajorantKind majorants, double scale, const std::string& file);
+    MediumFields(const OpalAsset& asset, MajorantKind majorants, double scale, const std::string& file,
+                 TrackingKind tracking = TrackingKind::residual);
 
     /// What stands in the medium's tables for each field: its value where it does not vary, else 1.
     double constant(MediumField field) const { return constants_[std::size_t(field)]; }

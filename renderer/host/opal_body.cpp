@@ -126,7 +126,8 @@ OpalBody::OpalBody(const ObjectDescription& object, const OpalDescription& setti
     if (constants.mosaic_spread_deg > 0.0)
         opal.mosaic_kappa = mosaic_exponent(float(units::rad_from_deg(constants.mosaic_spread_deg)));
 
-    medium_fields_ = std::make_unique<MediumFields>(asset, settings.majorants, double(float(object.scale)), file);
+    medium_fields_ =
+        std::make_unique<MediumFields>(asset, settings.majorants, double(float(object.scale)), file, settings.tracking);
     medium_fields_->attach(opal.medium);
     const double sigma_a_scale = medium_fields_->constant(MediumField::sigma_a_scale);
     const double sigma_s_mie_per_mm = medium_fields_->constant(MediumField::sigma_s_mie);

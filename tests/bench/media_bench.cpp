@@ -101,24 +101,20 @@ class MediaBench {
         for (row.cells = 1; row.cells <= 64; row.cells *= 2)
             for (const char* method : {"residual", "ratio"}) {
                 row.method = method;
-                measure(opal, lanes, MajorantGrid(grids, bounds, row.cells), row);
+                measure(opal, lanes, grids, MajorantGrid(grids, bounds, row.cells), row);
             }
         row.fitted = true;
         const MajorantView fitted = fields.majorants()->view();
         row.cells = std::max({fitted.size[0], fitted.size[1], fitted.size[2]});
         for (const char* method : {"residual", "ratio"}) {
             row.method = method;
-            measure(opal, lanes, *fields.majorants(), row);
+            measure(opal, lanes, grids, *fields.majorants(), row);
         }
     }
 
-    void measure(OpalView opal, const LaneMedium<4>& lanes, const MajorantGrid& majorants, MediaBenchRow row) {
-        std::vector<MajorantCell> cells = majorants.cells();
-        if (row.method == "ratio")
-            for (MajorantCell& cell : cells)
-                for (int f = 0; f < num_medium_fields; ++f)
-                    if (opal.medium.fields[f].grid) cell.min[f] = 0.0f;
-        const MajorantGrid grid(std::move(cells), majorants.view());
+    void measure(OpalView opal, const LaneMedium<4>& lanes, const MediumFieldGrids& grids, const MajorantGrid& majorants,
+                 MediaBenchRow row) {
+        const MajorantGrid grid = row.method == "ratio" ? majorants.without_least(grids) : majorants;
         opal.medium.majorants = grid.view();
         double squares = 0.0;
         std::uint64_t pairs = 0;

@@ -110,7 +110,7 @@ class SceneWriter {
 
     void add_environment() {
         line("[environment]");
-        const std::string kind = random_.pick({"studio", "constant", "constant", "env.exr", "env.exr", "env.hdr", "env.png"});
+        const std::string kind = random_.pick({"studio", "constant", "tent", "env.exr", "env.exr", "env.hdr", "env.png"});
         line("{} = \"{}\"", kind.starts_with("env") ? "file" : "kind", kind);
         line("radiance = {}", random_.pick({0.0, 1.0, 1.0, 1.0, 1.0e3, 1.0e9}));
         line("rotate_deg = {}", random_.between(-400.0, 400.0));
@@ -125,6 +125,7 @@ class SceneWriter {
         line("companions = {}", random_.integer(0, 7));
         line("dispersion = \"{}\"", random_.pick({"full", "bands", "none"}));
         line("majorants = \"{}\"", random_.pick({"local", "global"}));
+        line("tracking = \"{}\"", random_.pick({"residual", "ratio"}));
         line("max_odds = {}", random_.pick({1.0, 400.0, 400.0, 1.0e6}));
         line("ewald_tolerance = {}", random_.pick({0.01, 0.5, 1.0e-6}));
     }

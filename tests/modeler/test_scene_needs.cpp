@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "modeler/box_shape.h"
 #include "modeler/build.h"
+#include "modeler/cabochon_shape.h"
 #include "modeler/defect_scattering.h"
 #include "modeler_test_tools.h"
 
@@ -30,8 +32,20 @@ Recipe recipe_with(const std::string& more = "") {
     return parse_recipe(recipe_text + more, "r.toml", {});
 }
 
+/// The recipe's box, about the origin.
+class MiddleBox final : public Shape {
+  public:
+    double signed_distance_mm(const openvdb::Vec3d& point_mm) const override {
+        return box_.signed_distance_mm(point_mm + openvdb::Vec3d(0.0, 0.0, 1.0));
+    }
+    openvdb::BBoxd bounds_mm() const override { return {{-4, -2, -1}, {4, 2, 1}}; }
+
+  private:
+    BoxShape box_{openvdb::Vec3d(8.0, 4.0, 2.0)};
+};
+
 SceneNeeds fit(Recipe& recipe, const SceneDescription& scene, double error_pixels = 1.0) {
-    return fit_to_scene(recipe, scene, "out/gem.vdb", openvdb::BBoxd({-4, -2, -1}, {4, 2, 1}), error_pixels);
+    return fit_to_scene(recipe, scene, "out/gem.vdb", MiddleBox(), error_pixels);
 }
 
 double footprint_at(double depth_mm) {
@@ -126,9 +140,43 @@ TEST(SceneNeeds, FieldsOfDefectsAreJudgedWhereTheyScatterMost) {
     EXPECT_EQ(fit(dropped, scene_with("", "", voxels)).dropped.size(), 1u);
 }
 
-TEST(SceneNeeds, AFarGemKeepsFourVoxels) {
+TEST(SceneNeeds, AFarGemKeeps32Voxels) {
     Recipe recipe = recipe_with();
-    EXPECT_EQ(fit(recipe, scene_with("translate_mm = [0, 1e5, 0]\n")).voxel_size_mm, 2.0);
+    EXPECT_EQ(fit(recipe, scene_with("translate_mm = [0, 1e5, 0]\n", "", voxels)).voxel_size_mm, 0.25);
+}
+
+/// 12 x 9 x 4.5 mm with a rim of 0.4 mm, from 12 mm: dome alone in the picture, or all of it.
+SceneNeeds fit_cabochon(const std::string& fov, const std::string& recipe_more, const std::string& settings) {
+    Recipe recipe = recipe_with(recipe_more);
+    const SceneDescription scene = parse_scene(
+        "[render]\nwidth = 800\nheight = 600\n[camera]\nposition_mm = [0, 0, 16]\ntarget_mm = [0, 0, 4]\nup = [0, 1, 0]\n"
+        "vertical_fov_deg = " +
+            fov + "\n" + settings + "\n[[object]]\nkind = \"opal\"\nfile = \"gem.vdb\"\n",
+        "s.toml", {});
+    return fit_to_scene(recipe, scene, "gem.vdb", CabochonShape({12.0, 9.0, 4.5}, 0.4), 1.0);
+}
+
+TEST(SceneNeeds, ASurfaceTakesNoFinerVoxelsThanItsCurvatureInThePicture) {
+    const SceneNeeds dome = fit_cabochon("8", "", ""), all = fit_cabochon("60", "", "");
+    // The dome's radius of curvature is some mm, the rim's 0.2 mm.
+    EXPECT_GT(dome.voxel_size_mm, 12.0 / 100.0);
+    EXPECT_LE(dome.voxel_size_mm, 12.0 / 64.0);
+    EXPECT_LT(all.voxel_size_mm, std::sqrt(2.0 * 0.2 * all.pixel_footprint_mm * 1.5));
+    EXPECT_GT(all.voxel_size_mm, 1.5 * all.pixel_footprint_mm);
+    for (const SceneNeeds& needs : {dome, all}) {
+        EXPECT_GT(needs.surface_places, 100u);
+        EXPECT_GT(needs.boundary_error_mm, 0.0);
+        EXPECT_GT(needs.boundary_error_pixels, 0.5);
+        EXPECT_LE(needs.boundary_error_pixels, 1.0);
+        EXPECT_NE(scene_needs_summary(needs).find("follow its curvature"), std::string::npos);
+    }
+    // Grains from voxels: as fine as the pixels.
+    EXPECT_LT(fit_cabochon("8", "", voxels).voxel_size_mm, dome.voxel_size_mm / 20.0);
+    // What varies in the body takes voxels too.
+    const std::string field = "[base_color]\nsigma_a_per_mm = 0.1\nsigma_a_field = { kind = \"noise\", contrast = 0.5 }\n";
+    EXPECT_LT(fit_cabochon("8", field, "").voxel_size_mm, dome.voxel_size_mm / 20.0);
+    // Other frames show the rim.
+    EXPECT_LT(fit_cabochon("8", "", "[animation]\nframes = 2\ncamera_orbit_deg = 90\n").voxel_size_mm, 0.5 * all.voxel_size_mm);
 }
 
 TEST(SceneNeeds, WhichOpalIsMeant) {
@@ -137,7 +185,7 @@ TEST(SceneNeeds, WhichOpalIsMeant) {
     two.objects.back().file = "other.vdb";
     two.objects.back().scale = 2.0;
     Recipe recipe = recipe_with();
-    const openvdb::BBoxd box({-4, -2, -1}, {4, 2, 1});
+    const MiddleBox box;
     EXPECT_NEAR(fit_to_scene(recipe, two, "gem.vdb", box, 1.0).pixel_footprint_mm, footprint_at(48.0), 1.0e-12);
     EXPECT_NEAR(fit_to_scene(recipe, two, "other.vdb", box, 1.0).pixel_footprint_mm, 0.5 * footprint_at(46.0), 1.0e-12);
     const auto error = [&] { fit_to_scene(recipe, two, "third.vdb", box, 1.0); };

@@ -31,6 +31,32 @@ TEST(Environment, ConstantDirectionsAreUniform) {
         EXPECT_NEAR(environment_pdf(map.view(), d), 1.0f / (4.0f * pi_f), 1e-2f / (4.0f * pi_f));
 }
 
+TEST(Environment, TheTentIsBroadAndBrightestTowardsItsLamp) {
+    EnvironmentDescription description;
+    description.kind = EnvironmentKind::tent;
+    const EnvironmentMap tent = make_environment(description), studio = make_environment(EnvironmentDescription{});
+    const Vec3 lamp = normalize({-0.557f, 0.321f, 0.766f});
+    EXPECT_NEAR(rgb_towards(tent, lamp).g, 0.08 + 0.15 * 1.766 + 2.4, 0.01);
+    EXPECT_NEAR(rgb_towards(tent, -1.0f * lamp).g, 0.08 + 0.15 * 0.234, 0.002);
+    EXPECT_NEAR(rgb_towards(tent, {0, 0, -1}).g, 0.08, 0.002);
+    // What makes opals noisy: the mean of the squared radiance over the squared mean, over all directions.
+    const auto contrast = [](Rgb (*radiance)(Vec3)) {
+        double sum = 0.0, squares = 0.0;
+        constexpr int count = 100'000;
+        for (int k = 0; k < count; ++k) {
+            const RandomBlock block = random_block(1, RandomStream::bench, std::uint64_t(k), 0);
+            const float z = 2.0f * uniform_float(block.value[0]) - 1.0f, turn = 2.0f * pi_f * uniform_float(block.value[1]);
+            const double value =
+                double(radiance({std::sqrt(1.0f - z * z) * std::cos(turn), std::sqrt(1.0f - z * z) * std::sin(turn), z}).g);
+            sum += value / count;
+            squares += value * value / count;
+        }
+        return squares / (sum * sum);
+    };
+    EXPECT_GT(contrast(studio_radiance), 15.0 * contrast(tent_radiance));
+    EXPECT_NEAR(double(tent.mean_luminance), 0.08 + 0.15 + 2.4 * 0.1, 0.005);  // of cosine^4 over the sphere: 1 / 10
+}
+
 TEST(Environment, RotationTurnsTheLightAboutZ) {
     EnvironmentDescription description;
     const EnvironmentMap plain = make_environment(description);

@@ -125,7 +125,7 @@ TEST_P(Media, GridsEqualHomogeneousMediaOfTheSameValue) {
     grids.fields = {except_at_a_corner(1.0), except_at_a_corner(0.6), except_at_a_corner(0.3)};
     for (const char* companions : {"companions = 0\n", "companions = 3\n"}) {
         const SpectrumTotals homogeneous = render_plate(GetParam(), uniform, companions, 512).outcome.totals;
-        for (const char* majorants : {"majorants = \"local\"\n", "majorants = \"global\"\n"}) {
+        for (const char* majorants : {"majorants = \"local\"\n", "majorants = \"global\"\n", "tracking = \"ratio\"\n"}) {
             const Rendered rendered = render_plate(GetParam(), grids, std::string(companions) + majorants, 512);
             EXPECT_EQ(rendered.outcome.counters.majorant_violations, 0u);
             const double statistic = difference_statistic(rendered.outcome.totals, homogeneous);

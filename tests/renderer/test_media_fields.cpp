@@ -44,6 +44,24 @@ OpalAsset varied_ball() {
     return asset;
 }
 
+TEST(MajorantGrid, RatioTrackingSplitsNothingOff) {
+    const OpalAsset asset = varied_ball();
+    for (const MajorantKind kind : {MajorantKind::local, MajorantKind::global}) {
+        const MediumFields residual(asset, kind, 1.0, "test.vdb"), ratio(asset, kind, 1.0, "test.vdb", TrackingKind::ratio);
+        const std::vector<MajorantCell>&given = residual.majorants()->cells(), &without = ratio.majorants()->cells();
+        ASSERT_EQ(given.size(), without.size());
+        bool any = false;
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            for (int f = 0; f < num_medium_fields; ++f) {
+                EXPECT_EQ(without[i].min[f], 0.0f);
+                EXPECT_EQ(without[i].max[f], given[i].max[f]);
+                any = any || given[i].min[f] > 0.0f;
+            }
+        }
+        EXPECT_TRUE(any);
+    }
+}
+
 TEST(MajorantGrid, BoundsEveryPlaceAndVoxelAtEveryWavelength) {
     const OpalAsset asset = varied_ball();
     const SampledSpectrum absorber = absorber_spectrum("light-blue-dye", 0.3);

@@ -98,7 +98,8 @@ void bench_shots(const std::filesystem::path& folder, bool quick) {
     std::filesystem::create_directories(folder);
     AtomicFile file(folder / "shots.csv");
     std::ofstream csv(file.temporary_path());
-    csv << "shot,model,build_s,file_bytes,memory_bytes,load_s,processor_us_per_sample,samples_per_patch,squared_lab_difference,"
+    csv << "shot,light,model,build_s,file_bytes,memory_bytes,load_s,processor_us_per_sample,samples_per_patch,squared_lab_"
+           "difference,"
            "squared_lab_se,ciede2000_p95\n";
     OpalBuilds builds(folder / "shot_opals");
     const ParetoScene example = pareto_scenes(OPAL_EXAMPLES, OPAL_BENCH_BLOCK, true).front();
@@ -124,19 +125,24 @@ void bench_shots(const std::filesystem::path& folder, bool quick) {
         const int patch_pixels = shot.patch_edge * shot.patch_edge;
         const int samples = std::max(1, (quick ? 512 : 4096) / patch_pixels);
         for (int seed = 0; seed < num_seeds; ++seed)
-            for (const auto& subject : subjects) subject->draw(drawn.pixels, samples, 7000 + std::uint64_t(seed));
-        const SeedPictures whole = patch_means(subjects.front()->pictures(), drawn.patches);
+            for (const auto& subject : subjects)
+                for (const Lighting lighting : {Lighting::of_the_scene, Lighting::tent})
+                    subject->draw(drawn.pixels, samples, 7000 + std::uint64_t(seed), lighting);
         const std::vector<double> weights(drawn.patches.size(), 1.0 / double(drawn.patches.size()));
-        const std::vector<Opponent> first = mean_over(whole, 0, num_seeds / 2);
-        for (std::size_t i = 0; i < models.size(); ++i) {
+        for (std::size_t k = 0; k < 2 * models.size(); ++k) {
+            const Lighting lighting = k < models.size() ? Lighting::of_the_scene : Lighting::tent;
+            const std::size_t i = k % models.size();
             const OpalBuild& opal = builds.build(scene, models[i]);
-            const SeedPictures patches = patch_means(subjects[i]->pictures(), drawn.patches);
+            const SeedPictures whole = patch_means(subjects.front()->pictures(lighting), drawn.patches);
+            const SeedPictures patches = patch_means(subjects[i]->pictures(lighting), drawn.patches);
+            const std::vector<Opponent> first = mean_over(whole, 0, num_seeds / 2);
             const Estimate difference = squared_bias(shown(patches, exposure), shown(whole, exposure), weights);
-            const std::string line = fmt::format("{},\"{}\",{:.3g},{},{},{:.3g},{:.4g},{},{:.4g},{:.2g},{:.3g}", shot.name,
-                                                 models[i].name, opal.processor_s, opal.bytes, subjects[i]->memory_bytes(),
-                                                 subjects[i]->load_s(), 1e6 * mean_of(subjects[i]->sample_s()).value,
-                                                 samples * patch_pixels * num_seeds, difference.value, difference.standard_error,
-                                                 percentile_95(first, mean_over(patches, num_seeds / 2, num_seeds), exposure));
+            const std::string line =
+                fmt::format("{},{},\"{}\",{:.3g},{},{},{:.3g},{:.4g},{},{:.4g},{:.2g},{:.3g}", shot.name,
+                            lighting == Lighting::tent ? "tent" : "studio", models[i].name, opal.processor_s, opal.bytes,
+                            subjects[i]->memory_bytes(), subjects[i]->load_s(), 1e6 * mean_of(subjects[i]->sample_s()).value,
+                            samples * patch_pixels * num_seeds, difference.value, difference.standard_error,
+                            percentile_95(first, mean_over(patches, num_seeds / 2, num_seeds), exposure));
             csv << line << '\n';
             fmt::print("{}\n", line);
         }

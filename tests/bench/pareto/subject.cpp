@@ -19,6 +19,13 @@ double thread_processor_s() {
     return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
+/// Turned like the scene's own environment.
+EnvironmentMap tent_of(EnvironmentDescription environment) {
+    environment.kind = EnvironmentKind::tent;
+    environment.file.clear();
+    return make_environment(environment);
+}
+
 }  // namespace
 
 Subject::Subject(const std::filesystem::path& scene, const std::vector<std::string>& settings, SpectralChoice spectral)
@@ -27,7 +34,8 @@ Subject::Subject(const std::filesystem::path& scene, const std::vector<std::stri
       intersector_(host_.meshes()),
       guides_(host_, intersector_),
       lines_(host_.view().spectra, spectral),
-      load_s_(watch_.seconds()) {}
+      load_s_(watch_.seconds()),
+      tent_(tent_of(description_.environment)) {}
 
 std::size_t Subject::memory_bytes() const {
     return scene_memory(guides_.scene()).total_bytes();
@@ -53,9 +61,13 @@ Opponent Subject::mean_of_pixel(const SceneView& view, std::uint32_t pixel, int 
 }
 
 template <int N>
-void Subject::draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed) {
+void Subject::draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed, Lighting lighting) {
     SceneView view = guides_.scene();
     view.seed = seed;
+    if (lighting == Lighting::tent) {
+        view.environment = tent_.view();
+        view.lights.environment_luminance = tent_.mean_luminance;
+    }
     lines_.confine(view.spectra);
     std::vector<Opponent> means(pixels.size());
     std::atomic<double> processor_s = 0.0;
@@ -64,18 +76,22 @@ void Subject::draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, 
         for (std::size_t p = range.begin(); p < range.end(); ++p) means[p] = mean_of_pixel<N>(view, pixels[p], samples);
         processor_s += thread_processor_s() - begin_s;
     });
+    if (lighting == Lighting::tent) {
+        tent_pictures_.push_back(std::move(means));
+        return;
+    }
     pictures_.push_back(std::move(means));
     sample_s_.push_back(processor_s / double(pixels.size()) / samples);
 }
 
-void Subject::draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed) {
+void Subject::draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed, Lighting lighting) {
     const int lanes = host_.view().wavelengths;
     if (lanes == 1)
-        draw_lanes<1>(pixels, samples, seed);
+        draw_lanes<1>(pixels, samples, seed, lighting);
     else if (lanes <= 4)
-        draw_lanes<4>(pixels, samples, seed);
+        draw_lanes<4>(pixels, samples, seed, lighting);
     else
-        draw_lanes<8>(pixels, samples, seed);
+        draw_lanes<8>(pixels, samples, seed, lighting);
 }
 
 Estimate mean_of(const std::vector<double>& values) {

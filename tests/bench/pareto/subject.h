@@ -9,10 +9,14 @@
 #include "formats/scene.h"
 #include "picture_error.h"
 #include "renderer/cpu/light_guides.h"
+#include "renderer/host/environment_map.h"
 #include "renderer/host/host_scene.h"
 #include "spectral_lines.h"
 
 namespace opal {
+
+/// What lights a scene's gem: its own environment, or the built-in light tent, whose broad light leaves far less noise.
+enum class Lighting { of_the_scene, tent };
 
 /// One scene with some settings in memory, and what has been drawn of it, seed by seed.
 class Subject {
@@ -26,16 +30,19 @@ class Subject {
     double load_s() const { return load_s_; }
     int width() const { return host_.view().width; }
     /// Means of the pixels drawn, for every seed.
-    const SeedPictures& pictures() const { return pictures_; }
-    /// Processor time per sample, for every seed.
+    const SeedPictures& pictures(Lighting lighting = Lighting::of_the_scene) const {
+        return lighting == Lighting::tent ? tent_pictures_ : pictures_;
+    }
+    /// Processor time per sample in the scene's own light, for every seed.
     const std::vector<double>& sample_s() const { return sample_s_; }
 
     /// Draws the pixels once more, with another seed.
-    void draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed);
+    void draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed,
+              Lighting lighting = Lighting::of_the_scene);
 
   private:
     template <int N>
-    void draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed);
+    void draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed, Lighting lighting);
     template <int N>
     Opponent mean_of_pixel(const SceneView& view, std::uint32_t pixel, int samples) const;
 
@@ -47,7 +54,8 @@ class Subject {
     const LightGuides guides_;
     const SpectralLines lines_;
     const double load_s_;
-    SeedPictures pictures_;
+    const EnvironmentMap tent_;
+    SeedPictures pictures_, tent_pictures_;
     std::vector<double> sample_s_;
 };
 

@@ -118,6 +118,31 @@ Variants phase_functions(const ParetoScene& scene) {
     return variants;
 }
 
+Variants trackings() {
+    Variants variants;
+    for (const char* tracking : {"residual", "ratio"})
+        for (const char* majorants : {"local", "global"})
+            variants.push_back({"tracking",
+                                fmt::format("{}, {} majorants", tracking, majorants),
+                                {},
+                                {fmt::format("opal.tracking={}", tracking), fmt::format("opal.majorants={}", majorants)}});
+    variants.front().exact = true;
+    return variants;
+}
+
+/// Exact patches, or triangles from level sets; the grains are exact in all.
+Variants tessellations(const ParetoScene& scene, bool quick) {
+    Variants variants = {
+        {"shape", "exact patches", {voxels_along(scene, quick ? 64 : 256), only_cells}, {"object.0.exact=true"}}};
+    variants.front().exact = true;
+    for (const int count : quick ? std::vector<int>{64} : std::vector<int>{32, 64, 128, 256})
+        variants.push_back({"shape",
+                            fmt::format("triangles, {} voxels", count),
+                            {voxels_along(scene, count), only_cells},
+                            {"object.0.exact=false"}});
+    return variants;
+}
+
 /// The same scene turned about the vertical, all of it: the same picture in other roundings.
 Variants roundings() {
     const double turn_rad = units::rad_from_deg(37.0), distance_mm = 32.0;
@@ -159,6 +184,7 @@ std::vector<ParetoScene> pareto_scenes(const std::filesystem::path& examples, co
                            longest_mm,
                            scatters,
                            false,
+                           false,
                            diameter_nm,
                            1.45,
                            n_medium};
@@ -168,11 +194,14 @@ std::vector<ParetoScene> pareto_scenes(const std::filesystem::path& examples, co
         scenes.push_back(example("white_opal", 11.0, true, 290.0, 1.36));
         scenes.push_back(example("fire_opal", 11.0, true, 280.0, 1.41));
     }
-    scenes.push_back({"block", block / "recipe.toml", block / "scene.toml", 8.0, true, true, 280.0, 1.4585, 1.333});
+    scenes.push_back({"block", block / "recipe.toml", block / "scene.toml", 8.0, true, true, false, 280.0, 1.4585, 1.333});
+    scenes.push_back({"teapot", examples / "teapots" / "pink.toml", block.parent_path() / "teapot" / "scene.toml", 20.0, true,
+                      false, true, 290.0, 1.45, 1.36});
     return scenes;
 }
 
 std::vector<std::vector<ParetoVariant>> pareto_choices(const ParetoScene& scene, bool quick) {
+    if (scene.patches_alone) return {tessellations(scene, quick)};
     const auto few = [quick](std::vector<int> values) {
         return quick ? std::vector<int>{values.front(), values.back()} : values;
     };
@@ -195,7 +224,7 @@ std::vector<std::vector<ParetoVariant>> pareto_choices(const ParetoScene& scene,
         choices.push_back(phase_functions(scene));
     }
     if (scene.varies) {
-        choices.push_back(words("tracking", "opal.majorants", {"local", "global"}));
+        choices.push_back(trackings());
         choices.push_back(words("dispersion", "opal.dispersion", {"full", "bands", "none"}));
     }
     return choices;

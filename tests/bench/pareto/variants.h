@@ -16,6 +16,7 @@ struct ParetoScene {
     double longest_mm = 0.0;  ///< side of the shape
     bool scatters = false;
     bool varies = false;                                              ///< its coefficients, and its indices over the wavelength
+    bool patches_alone = false;                                       ///< here for one choice: its Bezier patches or triangles
     double sphere_diameter_nm = 0.0, n_sphere = 0.0, n_medium = 0.0;  ///< at the sodium line
 };
 
