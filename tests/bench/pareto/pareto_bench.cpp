@@ -158,7 +158,7 @@ std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vec
 
 void bench_pareto(const std::filesystem::path& folder, bool quick, const std::vector<std::string>& only) {
     std::filesystem::create_directories(folder);
-    const Extent extent = quick ? Extent{20, 4, 48, 12} : Extent{40, 8, 96, 24};
+    const Extent extent = quick ? Extent{20, 4, 48, 12} : Extent{40, 8, 96, 48};
     AtomicFile file(folder / "pareto.csv");
     std::ofstream csv(file.temporary_path());
     csv << header;

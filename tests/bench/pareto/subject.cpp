@@ -20,10 +20,10 @@ double thread_processor_s() {
 }
 
 /// Turned like the scene's own environment.
-EnvironmentMap tent_of(EnvironmentDescription environment) {
+EnvironmentMap tent_of(EnvironmentDescription environment, Upsampling upsampling) {
     environment.kind = EnvironmentKind::tent;
     environment.file.clear();
-    return make_environment(environment);
+    return make_environment(environment, upsampling);
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ Subject::Subject(const std::filesystem::path& scene, const std::vector<std::stri
       guides_(host_, intersector_),
       lines_(host_.view().spectra, spectral),
       load_s_(watch_.seconds()),
-      tent_(tent_of(description_.environment)) {}
+      tent_(tent_of(description_.environment, description_.color.upsampling)) {}
 
 std::size_t Subject::memory_bytes() const {
     return scene_memory(guides_.scene()).total_bytes();
