@@ -22,11 +22,12 @@ struct SurfaceNeeds {
 };
 
 /// The coarsest voxels between `finest_mm` and `coarsest_mm` (in steps of a factor of 1.19) whose level set follows the shape's
-/// surface within `accepted_mm`. The error at a place of the surface is what the distance function says of a voxel's reach around
-/// it: how far the surface strays from its tangent within a voxel (for a radius of curvature r: h^2 / 2r, half of which is the
-/// facets' error, half that of interpolation between voxels), and by how much the distance along the normal, 1.5 voxels in and
-/// out, is not what it would be near a flat surface (thin walls, gaps, the far side of an edge). Places: some thousand, random,
-/// more of them on edges and corners; the same for the same shape.
+/// surface within `accepted_mm`; the finest where none does. The error at a place of the surface is an estimate from ten values
+/// of the distance function: how far the surface strays from its tangent a voxel aside, in eight directions (for a radius of
+/// curvature r: h^2 / 2r, half of which is the facets' error, half that of interpolation between voxels), and by how much the
+/// distance 1.5 voxels in and out is not what it would be near a flat surface (thin walls, gaps, the far side of an edge).
+/// Places: some thousand, random, more of them on edges and corners, the same for the same shape; what is smaller than their
+/// distance may be missed. Throws Interrupted on Ctrl-C.
 SurfaceNeeds coarsest_surface_voxels(const Shape& shape, const AcceptedSurfaceError& accepted_mm, double finest_mm,
                                      double coarsest_mm);
 

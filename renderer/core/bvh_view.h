@@ -87,8 +87,8 @@ class BvhView {
           num_primitives_(num_primitives),
           meshes_(meshes) {}
 
-    /// Nearest surface along the ray.
-    OPAL_HD bool closest(const Ray& ray, RayHit& hit) const { return walk<false>(ray, INFINITY, hit); }
+    /// Nearest surface along the ray, within `max_mm`.
+    OPAL_HD bool closest(const Ray& ray, RayHit& hit, float max_mm = INFINITY) const { return walk<false>(ray, max_mm, hit); }
     /// Whether anything lies along the ray within `max_mm`.
     OPAL_HD bool occluded(const Ray& ray, float max_mm) const {
         RayHit hit;

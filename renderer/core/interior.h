@@ -179,8 +179,8 @@ OPAL_HD inline bool exchange_in_grain(const OpalView& opal, const PathWavelength
 }
 
 /// Follows `ray` (world, inside the opal) until planes turn it, it scatters or reaches the surface; `ray` is then the last of the
-/// straight flights on the way. `surface.distance_mm()` finds the surface ahead of it with a ray cast; it is asked only where the
-/// ray might get so far: inside a band the next turn is often some micrometres away.
+/// straight flights on the way. `surface.distance_mm()` finds the surface ahead of it with a ray cast, no longer than it has to
+/// be; it is asked only where the ray might get so far: inside a band the next turn is often some micrometres away.
 template <int N, class SurfaceProbe>
 OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWavelengths<N>& wavelengths,
                                             const LaneOptics<N>& optics, const LaneMedium<N>& medium, Ray& ray,
@@ -234,7 +234,10 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                     next = walk.next_grain(visit.grain, reached, min_of(clear_mm, turn_mm) / scale);
             }
             if (next == 0 && turn_mm > clear_mm) {
-                surface_mm = surface.distance_mm();
+                // A turn or a scattering far before the grain's other side mostly is what comes next.
+                const float event_mm = min_of(turn_mm, flight.scatter_distance_mm());
+                const float near_mm = entered_mm + scale * opal.grain_size_mm[visit.grain - 1];
+                surface_mm = event_mm < near_mm ? surface.distance_mm(event_mm) : surface.distance_mm();
                 next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
             }
             visit.cell = walk.cell();
@@ -260,7 +263,9 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             entered_mm = end_mm;
         }
     }
-    event.position = ray.origin + flight.advance(surface.distance_mm(), weights) * ray.direction;
+    // Where it scattered in the grains, it goes no farther.
+    const float end_mm = flight.scattered() ? flight.scatter_distance_mm() : surface.distance_mm();
+    event.position = ray.origin + flight.advance(end_mm, weights) * ray.direction;
     event.direction = ray.direction;
     if (flight.scattered()) scatter(opal, wavelengths, flight.local(), visit, weights, random, counters, event);
     return event;

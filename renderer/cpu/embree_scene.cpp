@@ -104,9 +104,10 @@ EmbreeScene::~EmbreeScene() {
     if (device_) rtcReleaseDevice(device_);
 }
 
-bool EmbreeScene::closest(const Ray& ray, RayHit& hit) const {
+bool EmbreeScene::closest(const Ray& ray, RayHit& hit, float max_mm) const {
     RTCRayHit query;
     fill_ray(query.ray, ray);
+    query.ray.tfar = max_mm;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;

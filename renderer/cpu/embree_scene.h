@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <limits>
 #include <vector>
 
 #include "renderer/core/scene_view.h"
@@ -20,7 +21,7 @@ class EmbreeScene {
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     /// Nearest surface along the ray.
-    bool closest(const Ray& ray, RayHit& hit) const;
+    bool closest(const Ray& ray, RayHit& hit, float max_mm = std::numeric_limits<float>::infinity()) const;
     /// Whether anything lies along the ray within `max_mm`.
     bool occluded(const Ray& ray, float max_mm) const;
 

@@ -10,6 +10,8 @@ namespace {
 constexpr double many_truncated = 0.01;
 /// Gaps between triangles lose a path in a hundred thousand.
 constexpr double many_lost = 0.001;
+/// Of the stays in grains: then about a fifth of the reflected light meets two strong families at once (docs/stability.md).
+constexpr double many_multi_beam = 0.03;
 
 }  // namespace
 
@@ -24,6 +26,12 @@ std::vector<std::string> render_warnings(const PathCounters& counters, std::uint
             fmt::format("{:.2g} % of the paths left a body through gaps of its surface and count as black; are places "
                         "far from the origin, or bodies thinner than a voxel?",
                         100.0 * double(counters.lost_paths) / paths));
+    const double stays = double(counters.grain_crossings);
+    if (double(counters.multi_beam_stays) > many_multi_beam * stays)
+        warnings.push_back(
+            fmt::format("{:.1f} % of the stays in grains begin near two strong reflections at once, of which two-beam theory "
+                        "reflects up to 15 % too little; smaller spheres meet fewer",
+                        100.0 * double(counters.multi_beam_stays) / stays));
     if (counters.majorant_violations > 0)
         warnings.push_back(
             fmt::format("{} collisions met a field above its majorant; please report the scene", counters.majorant_violations));

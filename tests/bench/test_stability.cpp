@@ -202,17 +202,21 @@ TEST(Stability, WarningsSayWhatWentWrong) {
     EXPECT_TRUE(render_warnings(counters, 100000, 64).empty());
     counters.truncated_paths = 1000;
     counters.lost_paths = 100;
+    counters.grain_crossings = 1000;
+    counters.multi_beam_stays = 30;
     EXPECT_TRUE(render_warnings(counters, 100000, 64).empty());
     counters.truncated_paths = 2345;
     counters.lost_paths = 200;
+    counters.multi_beam_stays = 35;
     counters.majorant_violations = 7;
     counters.not_a_number = 3;
     const std::vector<std::string> warnings = render_warnings(counters, 100000, 64);
-    ASSERT_EQ(warnings.size(), 4u);
+    ASSERT_EQ(warnings.size(), 5u);
     EXPECT_EQ(warnings[0], "2.3 % of the paths were cut off after 64 bounces; raise render.max_bounces");
     EXPECT_NE(warnings[1].find("0.2 % of the paths left a body through gaps of its surface"), std::string::npos);
-    EXPECT_NE(warnings[2].find("7 collisions met a field above its majorant"), std::string::npos);
-    EXPECT_NE(warnings[3].find("3 samples were not numbers"), std::string::npos);
+    EXPECT_NE(warnings[2].find("3.5 % of the stays in grains begin near two strong reflections"), std::string::npos);
+    EXPECT_NE(warnings[3].find("7 collisions met a field above its majorant"), std::string::npos);
+    EXPECT_NE(warnings[4].find("3 samples were not numbers"), std::string::npos);
 }
 
 }  // namespace

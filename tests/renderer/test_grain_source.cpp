@@ -97,8 +97,18 @@ TEST(GrainSource, ChoosesWhatTheFileDescribesExactly) {
     OpalAsset asset = colourful().make();
     EXPECT_EQ(method(asset, GrainsKind::automatic), "cells");
     EXPECT_EQ(method(asset, GrainsKind::voxels), "voxels");
+    EXPECT_TRUE(notices.empty());
     EXPECT_EQ(method(asset, GrainsKind::sphere_tracing), "sphere-tracing");
     EXPECT_EQ(method(asset, GrainsKind::hyperboloid), "hyperboloid");
+    OpalAsset alike = asset;
+    for (Site& site : alike.sites) site.weight_mm = 0.0f;
+    EXPECT_EQ(method(alike, GrainsKind::hyperboloid), "hyperboloid");
+    ASSERT_EQ(notices.size(), 3u);
+    EXPECT_NE(notices[0].find("a.vdb: opal.grains = \"sphere-tracing\" is there for comparison"), std::string::npos);
+    EXPECT_NE(notices[1].find("misses boundaries between sites of nearly equal weight, here "), std::string::npos);
+    EXPECT_EQ(notices[1].find("here 100 % of the neighbours"), std::string::npos) << notices[1];
+    EXPECT_NE(notices[2].find("here 100 % of the neighbours"), std::string::npos);
+    notices.clear();
 
     OpalAsset noisy = asset;
     noisy.boundary_noise.amplitude_mm = 0.1;
