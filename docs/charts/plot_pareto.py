@@ -19,7 +19,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 COLORS = {"precious_opal": "#222222", "white_opal": "#3f88c5", "fire_opal": "#d1495b", "block": "#6a994e", "teapot": "#b56576"}
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
-RESOLVED = 2.0  # standard errors, of the squared error of patches (which are on the large side)
+RESOLVED = 3.0  # standard errors, of the squared error of patches: of 500 such errors one or none is a mistake
 RESOLVED_MEAN = 4.0  # of the mean
 NOISE = 0.1  # of a pixel, to which costs refer
 

@@ -33,8 +33,9 @@ def check(folder):
     black = {row["variant"]: row for row in choices["precious_opal", "diffraction"]}
     source = next(row for row in choices["precious_opal", "all together"] if row["variant"].startswith("source"))
     for row in (black["none"], source):
-        assert row["mean_error"] < -5.0 * row["mean_error_se"], row
-        assert row["tent_mean_error"] < -5.0 * row["tent_mean_error_se"], row
+        for light in ("", "tent_"):
+            # Standard errors from few seeds are uncertain themselves; the seeds are fixed, so are the errors.
+            assert row[light + "mean_error"] < min(-0.2, -3.0 * row[light + "mean_error_se"]), (light, row)
     # The same walk by another method, and the same scene turned, are not that.
     for choice, variant in (("grains", "sphere tracing"), ("precision", "single, scene turned by 37 degrees")):
         row = next(row for row in choices["precious_opal", choice] if row["variant"] == variant)
