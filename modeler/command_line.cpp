@@ -145,13 +145,13 @@ void add_build(CLI::App& app, BuildArguments& arguments) {
         build
             ->add_option(
                 "--for", arguments.scene_file,
-                "model no more than this scene's picture shows: voxels from its pixels' size at the gem, no fields or grids "
-                "without effect; the report says what was saved and which error is accepted")
+                "model no more than this scene's picture shows: voxels from its pixels and the surface's curvature in it, no "
+                "fields or grids without effect; the report says what was saved and which error is accepted")
             ->type_name("SCENE.toml");
     CLI::Option* const pixels =
         build
             ->add_option("--for-pixels", arguments.accepted_error_pixels,
-                         "with --for: how far off, in pixels, a grain boundary may be at most (default 1)")
+                         "with --for: how far off, in pixels, the surface or a grain boundary may be at most (default 1)")
             ->check(number_between(0.01, 100.0))
             ->type_name("PIXELS");
     build

@@ -30,6 +30,18 @@ TEST(Scene, GrainsByName) {
     EXPECT_INPUT_ERROR(parse(minimal, {"opal.grains=cell"}), "did you mean 'cells'?");
 }
 
+TEST(Scene, LightAndTrackingByName) {
+    const SceneDescription scene = parse(minimal, {"environment.kind=tent", "opal.tracking=ratio"});
+    EXPECT_EQ(scene.environment.kind, EnvironmentKind::tent);
+    EXPECT_EQ(scene.opal.tracking, TrackingKind::ratio);
+    const SceneDescription again = parse(scene_to_toml(scene));
+    EXPECT_EQ(again.environment.kind, EnvironmentKind::tent);
+    EXPECT_EQ(again.opal.tracking, TrackingKind::ratio);
+    EXPECT_EQ(parse(minimal).opal.tracking, TrackingKind::residual);
+    EXPECT_INPUT_ERROR(parse(minimal, {"opal.tracking=ration"}), "did you mean 'ratio'?");
+    EXPECT_INPUT_ERROR(parse(minimal, {"environment.kind=tant"}), "did you mean 'tent'?");
+}
+
 TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {
     EXPECT_EQ(parse(minimal).objects[0].file, std::filesystem::path("folder/gem.vdb"));
     EXPECT_EQ(parse(minimal, {"object.0.file=other.vdb"}).objects[0].file, std::filesystem::path("other.vdb"));
