@@ -27,7 +27,7 @@ constexpr double fewest_voxels = 32.0;
 /// Along the shortest side, so that plates remain.
 constexpr double fewest_of_thin = 4.0;
 /// The same where only the surface takes voxels, which cost little.
-constexpr double fewest_of_long_surface = 64.0, fewest_of_thin_surface = 16.0;
+constexpr double fewest_of_long_surface = 96.0, fewest_of_thin_surface = 16.0;
 /// Along the longest side: finer ones, for an edge in a macro, fit no memory.
 constexpr double most_voxels = 2000.0;
 /// Of the surface, in the picture: with fewer, little is known of what it shows.

@@ -31,7 +31,7 @@ struct SceneNeeds {
 /// `accepted_error_pixels` at the gem's nearest point in any frame, but at least 32 along the longest side, 4 along the shortest
 /// and at most 2000. Where the renderer finds the
 /// grains from the sites and nothing else varies, only the surface takes voxels, and no smaller ones than its curvature in the
-/// picture asks for (coarsest_surface_voxels): a 64th of the longest side and a 16th of the shortest at most. No labels then, and
+/// picture asks for (coarsest_surface_voxels): a 96th of the longest side and a 16th of the shortest at most. No labels then, and
 /// no field or display grid that the picture cannot show. A field is dropped where its variation along the longest straight path
 /// changes transmission by less than half an 8-bit step. `output`: the file that the scene's [[object]] of kind opal names (its
 /// only opal otherwise). Where the gem's box reaches behind a perspective camera there is no nearest point: the recipe's

@@ -57,7 +57,7 @@ def plot_choices(rows, target):
     choices = list(dict.fromkeys(row["choice"] for row in rows))
     columns = 3
     lines = math.ceil(len(choices) / columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(6.0 * columns, 3.4 * lines))
+    figure, axes = plt.subplots(lines, columns, figsize=(6.0 * columns, 3.4 * lines), squeeze=False)
     for axis in list(axes.flat)[len(choices) :]:
         axis.axis("off")
     floor = 1e-3
@@ -108,7 +108,7 @@ def plot_choices(rows, target):
 def plot_time(rows, target):
     """Error (bias and noise) over time, of whole sets of settings."""
     rows = [row for row in rows if row["choice"] == "all together"]
-    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    scenes = list(dict.fromkeys(row["scene"] for row in rows)) or ["not measured"]
     figure, axes = plt.subplots(1, len(scenes), figsize=(4.3 * len(scenes), 4.2), sharey=True, squeeze=False)
     times = [10.0 ** (k / 20.0) for k in range(20, 181)]
     styles = {"default": ("#888888", "--"), "draft": ("#f4a261", "-"), "preview": ("#2a9d8f", "-"),

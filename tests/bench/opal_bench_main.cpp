@@ -130,7 +130,8 @@ int run_bench(int argc, char** argv) {
     CLI::App* const shots =
         app.add_subcommand("shots", "one opal from afar, as a product, close up: the whole model against --for");
     shots->add_option("-o,--output", arguments.folder, "folder for shots.csv")->required()->type_name("DIR");
-    shots->add_flag("--quick", arguments.quick, "a sixteenth of the samples");
+    shots->add_flag("--quick", arguments.quick, "an eighth of the samples");
+    shots->add_option("--only", arguments.only, "a shot: wide, product or macro; repeatable")->type_name("NAME");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -160,7 +161,7 @@ int run_bench(int argc, char** argv) {
         return 0;
     }
     if (shots->parsed()) {
-        opal::bench_shots(arguments.folder, arguments.quick);
+        opal::bench_shots(arguments.folder, arguments.quick, arguments.only);
         return 0;
     }
     if (bvh->parsed()) {

@@ -39,7 +39,7 @@ TEST(Scene, LightAndTrackingByName) {
     EXPECT_EQ(again.opal.tracking, TrackingKind::ratio);
     EXPECT_EQ(parse(minimal).opal.tracking, TrackingKind::residual);
     EXPECT_INPUT_ERROR(parse(minimal, {"opal.tracking=ration"}), "did you mean 'ratio'?");
-    EXPECT_INPUT_ERROR(parse(minimal, {"environment.kind=tant"}), "did you mean 'tent'?");
+    EXPECT_INPUT_ERROR(parse(minimal, {"environment.kind=tents"}), "did you mean 'tent'?");
 }
 
 TEST(Scene, PathsAreRelativeToTheFileThatHoldsThem) {

@@ -195,7 +195,7 @@ TEST(SceneNeeds, FieldsOfDefectsAreJudgedWhereTheyScatterMost) {
 TEST(SceneNeeds, AFarGemKeeps32Voxels) {
     Recipe recipe = recipe_with();
     EXPECT_EQ(fit(recipe, scene_with("translate_mm = [0, 1e5, 0]\n", "", voxels)).voxel_size_mm, 0.25);
-    EXPECT_EQ(fit(recipe, scene_with("translate_mm = [0, 1e5, 0]\n")).voxel_size_mm, 0.125);  // the surface alone: 64
+    EXPECT_EQ(fit(recipe, scene_with("translate_mm = [0, 1e5, 0]\n")).voxel_size_mm, 8.0 / 96.0);  // the surface alone
 }
 
 /// 12 x 9 x 4.5 mm with a rim of 0.4 mm, from 12 mm: dome alone in the picture, or all of it.
@@ -212,8 +212,7 @@ SceneNeeds fit_cabochon(const std::string& fov, const std::string& recipe_more, 
 TEST(SceneNeeds, ASurfaceTakesNoFinerVoxelsThanItsCurvatureInThePicture) {
     const SceneNeeds dome = fit_cabochon("8", "", ""), all = fit_cabochon("60", "", "");
     // The dome's radius of curvature is some mm, the rim's 0.2 mm.
-    EXPECT_GT(dome.voxel_size_mm, 12.0 / 100.0);
-    EXPECT_LE(dome.voxel_size_mm, 12.0 / 64.0);
+    EXPECT_NEAR(dome.voxel_size_mm, 12.0 / 96.0, 1.0e-12);
     EXPECT_LT(all.voxel_size_mm, std::sqrt(2.0 * 0.2 * all.pixel_footprint_mm * 1.5));
     EXPECT_GT(all.voxel_size_mm, 1.5 * all.pixel_footprint_mm);
     for (const SceneNeeds& needs : {dome, all}) {
@@ -251,9 +250,9 @@ TEST(SceneNeeds, TheBuildUsesAndReportsThem) {
         recipe, [](const std::string&) {}, SceneFit{scene_with(""), "gem.vdb", 4.0});
     ASSERT_TRUE(built.report.scene_needs.has_value());
     EXPECT_EQ(built.asset.grain_id, nullptr);
-    EXPECT_EQ(built.asset.shape->voxelSize().x(), 0.125);  // a 64th of the length, a 16th of the thickness
+    EXPECT_NEAR(built.asset.shape->voxelSize().x(), 8.0 / 96.0, 1.0e-12);
     EXPECT_FALSE(built.output.for_blender);
-    EXPECT_NE(built.asset.recipe_toml.find("voxel_size_mm = 0.125"), std::string::npos) << built.asset.recipe_toml;
+    EXPECT_NE(built.asset.recipe_toml.find("voxel_size_mm = 0.0833"), std::string::npos) << built.asset.recipe_toml;
 }
 
 }  // namespace

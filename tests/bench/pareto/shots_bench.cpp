@@ -96,7 +96,7 @@ double percentile_95(const std::vector<Opponent>& a, const std::vector<Opponent>
 
 }  // namespace
 
-void bench_shots(const std::filesystem::path& folder, bool quick) {
+void bench_shots(const std::filesystem::path& folder, bool quick, const std::vector<std::string>& only) {
     std::filesystem::create_directories(folder);
     AtomicFile file(folder / "shots.csv");
     std::ofstream csv(file.temporary_path());
@@ -107,6 +107,7 @@ void bench_shots(const std::filesystem::path& folder, bool quick) {
     const ParetoScene example = pareto_scenes(OPAL_EXAMPLES, OPAL_BENCH_BLOCK, true).front();
     const double exposure = std::exp2(0.8);  // the scene's
     for (const Shot& shot : shots) {
+        if (!only.empty() && std::find(only.begin(), only.end(), shot.name) == only.end()) continue;
         // opal-model reads a scene's file: the shot's camera goes into a copy.
         ParetoScene scene = example;
         scene.scene = std::filesystem::absolute(folder) / (shot.name + ".toml");

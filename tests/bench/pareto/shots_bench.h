@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace opal {
 
@@ -13,6 +15,7 @@ namespace opal {
 /// in CIELAB under D65. What the models' pictures converge to is told apart from noise by eight seeds; beside it stands what an
 /// eye would compare: the 95th percentile of CIEDE2000 against the whole model drawn with other random numbers, for the whole
 /// model too.
-void bench_shots(const std::filesystem::path& folder, bool quick);
+/// In the studio, and in the light tent with eight times the samples. `only`: names of shots; empty: all.
+void bench_shots(const std::filesystem::path& folder, bool quick, const std::vector<std::string>& only);
 
 }  // namespace opal
