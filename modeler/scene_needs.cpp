@@ -111,12 +111,21 @@ bool fields_vary(const Recipe& recipe) {
             color.sigma_s_mie_field.kind != FieldKind::constant);
 }
 
+double longest_side_mm(const Shape& shape) {
+    const openvdb::Vec3d extents_mm = shape.bounds_mm().extents();
+    return std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()});
+}
+
+double shortest_side_mm(const Shape& shape) {
+    const openvdb::Vec3d extents_mm = shape.bounds_mm().extents();
+    return std::min({extents_mm.x(), extents_mm.y(), extents_mm.z()});
+}
+
 /// Voxels as coarse as the surface allows, where nothing but the surface takes any.
 void follow_curvature(const Shape& shape, const std::vector<PictureView>& views, double accepted_error_pixels,
                       SceneNeeds& needs) {
-    const openvdb::Vec3d extents_mm = shape.bounds_mm().extents();
-    const double coarsest_mm = std::min(std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / fewest_of_long_surface,
-                                        std::min({extents_mm.x(), extents_mm.y(), extents_mm.z()}) / fewest_of_thin_surface);
+    const double coarsest_mm =
+        std::min(longest_side_mm(shape) / fewest_of_long_surface, shortest_side_mm(shape) / fewest_of_thin_surface);
     const double finest_mm = std::min(needs.voxel_size_mm, coarsest_mm);
     SurfaceNeeds surface = coarsest_surface_voxels(
         shape,
@@ -147,18 +156,16 @@ SceneNeeds fit_to_scene(Recipe& recipe, const SceneDescription& scene, const std
                         double accepted_error_pixels) {
     const std::vector<std::size_t> objects = find_opal(scene, output);
     const std::vector<PictureView> views = picture_views(scene, objects);
-    const openvdb::Vec3d extents_mm = shape.bounds_mm().extents();
-    const double longest_mm = std::max({extents_mm.x(), extents_mm.y(), extents_mm.z()}),
-                 shortest_mm = std::min({extents_mm.x(), extents_mm.y(), extents_mm.z()});
+    const double longest_mm = longest_side_mm(shape);
     SceneNeeds needs;
     needs.recipe_voxel_size_mm = recipe.resolution > 0 ? longest_mm / recipe.resolution : recipe.grains.voxel_size_mm;
     needs.pixel_footprint_mm = std::numeric_limits<double>::infinity();
     for (const PictureView& view : views)
         needs.pixel_footprint_mm = std::min(needs.pixel_footprint_mm, view.nearest_footprint_mm(shape.bounds_mm()));
-    drop_what_does_not_show(recipe, finds_grains_from_sites(recipe, scene.opal), extents_mm.length(), needs);
+    drop_what_does_not_show(recipe, finds_grains_from_sites(recipe, scene.opal), shape.bounds_mm().extents().length(), needs);
     if (needs.pixel_footprint_mm > 0.0) {
         needs.voxel_size_mm = std::max(std::min({accepted_error_pixels * needs.pixel_footprint_mm / half_diagonal,
-                                                 longest_mm / fewest_voxels, shortest_mm / fewest_of_thin}),
+                                                 longest_mm / fewest_voxels, shortest_side_mm(shape) / fewest_of_thin}),
                                        longest_mm / most_voxels);
         needs.boundary_error_mm = half_diagonal * needs.voxel_size_mm;
         needs.boundary_error_pixels = needs.boundary_error_mm / needs.pixel_footprint_mm;

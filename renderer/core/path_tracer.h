@@ -7,8 +7,8 @@
 #include "renderer/core/scene_view.h"
 #include "renderer/core/surface_probe.h"
 
-/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&) and bool occluded(const Ray&, float max_mm):
-/// Embree on the CPU.
+/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&, float max_mm), bool occluded(const Ray&, float
+/// max_mm): Embree on the CPU.
 namespace opal {
 
 /// What one path found, per lane, before the division by the lane's wavelength density.
