@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "renderer/core/compat.h"
+#include "renderer/core/real.h"
 #include "renderer/core/vec.h"
 
 namespace opal {
 
 /// One column of an alias table: it is itself for `keep` of its width, `other` for the rest.
 struct AliasColumn {
-    float keep = 1.0f;
+    real keep = 1.0f;
     int other = 0;
 };
 
@@ -21,10 +21,10 @@ struct AliasTable {
     int count = 0;
 
     /// The index for a number in [0, 1), and what is left of the number, again evenly distributed over [0, 1).
-    OPAL_HD int sample(float u, float& within) const {
-        const float position = u * float(count);
+    OPAL_HD int sample(real u, real& within) const {
+        const real position = u * real(count);
         const int column = min_of(int(position), count - 1);
-        const float rest = min_of(position - float(column), 0.999999f);
+        const real rest = min_of(position - real(column), 0.999999f);
         const AliasColumn& entry = columns[column];
         if (rest < entry.keep) {
             within = rest / entry.keep;

@@ -13,10 +13,10 @@ namespace opal {
 struct PatchPiece {
     double control_mm[3][4][4];  ///< axis by axis
     uint32_t patch;
-    float u0, v0, width;  ///< parameters of the patch from u0, v0 on; exact binary fractions
-    float largest_mm;     ///< coordinate
-    float normal[3];      ///< unit axis of a cone that holds all normals
-    float normal_sine;    ///< of its half angle; above 1 where it is no cone
+    real u0, v0, width;  ///< parameters of the patch from u0, v0 on; exact binary fractions
+    real largest_mm;     ///< coordinate
+    real normal[3];      ///< unit axis of a cone that holds all normals
+    real normal_sine;    ///< of its half angle; above 1 where it is no cone
 };
 
 /// A surface of patches, cut into pieces for the tree of bounds.
@@ -28,8 +28,8 @@ struct PatchMeshView {
 
 /// Where a ray meets a patch.
 struct PatchHit {
-    float u = 0.0f, v = 0.0f;  ///< of the patch
-    float distance_mm = 0.0f;
+    real u = 0.0f, v = 0.0f;  ///< of the patch
+    real distance_mm = 0.0f;
     bool met = false;
 };
 
@@ -170,7 +170,7 @@ OPAL_HD inline bool find_root(const PatchBox& box, double exact_mm, double& s, d
 /// The nearest place beyond 0 and nearer than `max_mm` where a ray meets a piece. Parts that cannot hold one are left out by the
 /// bounds of their control points in the ray's frame, the others halved until Newton's method finds the one place there (Kajiya
 /// 1982, "Ray tracing parametric patches", for the frame; Toth 1985, "On ray tracing parametric surfaces", for the certainty).
-OPAL_HD inline PatchHit meet_piece(const PatchPiece& piece, const Ray& ray, float max_mm) {
+OPAL_HD inline PatchHit meet_piece(const PatchPiece& piece, const Ray& ray, real max_mm) {
     using namespace bezier_detail;
     constexpr int most_halvings = 14;  // of each parameter: two places nearer to each other than that are one touch
     const double along[3] = {double(ray.direction.x), double(ray.direction.y), double(ray.direction.z)};
@@ -240,8 +240,8 @@ OPAL_HD inline PatchHit meet_piece(const PatchPiece& piece, const Ray& ray, floa
             if (fabs(dot(point.normal, along)) < touch_cosine) continue;
         }
         nearest_mm = distance_mm;
-        const auto parameter = [](double p) { return float(p < 0.0 ? 0.0 : (p > 1.0 ? 1.0 : p)); };
-        nearest = {parameter(u), parameter(v), float(distance_mm), true};
+        const auto parameter = [](double p) { return real(p < 0.0 ? 0.0 : (p > 1.0 ? 1.0 : p)); };
+        nearest = {parameter(u), parameter(v), real(distance_mm), true};
     }
     return nearest;
 }

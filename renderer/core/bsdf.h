@@ -19,8 +19,8 @@ template <int N>
 struct SurfaceInteraction {
     Surface surface;
     Vec3 direction;  ///< unit, travelling towards the surface
-    float index_before[N];
-    float index_beyond[N];  ///< bodies only
+    real index_before[N];
+    real index_beyond[N];  ///< bodies only
 
     /// Unit normal on the side that the path comes from.
     OPAL_HD Vec3 face_normal() const {
@@ -66,7 +66,7 @@ OPAL_HD inline Plastic<N> plastic_at(const MaterialView& material, const Spectru
 }
 
 template <int N>
-OPAL_HD inline RoughInterface<N> interface_at(float roughness, const PathWavelengths<N>& wavelengths,
+OPAL_HD inline RoughInterface<N> interface_at(real roughness, const PathWavelengths<N>& wavelengths,
                                               const SurfaceInteraction<N>& interaction) {
     RoughInterface<N> rough;
     rough.roughness = roughness;
@@ -80,7 +80,7 @@ template <int N>
 OPAL_HD inline BsdfSample<N> in_world(BsdfSample<N> sample, const Frame& frame, Vec3 face) {
     if (dot(sample.direction, sample.direction) == 0.0f) return sample;
     sample.direction = normalize(frame.world_from_local(sample.direction));
-    const float height = dot(sample.direction, face);
+    const real height = dot(sample.direction, face);
     if (sample.transmitted ? !(height < 0.0f) : !(height > 0.0f)) sample.direction = {};
     return sample;
 }
@@ -89,7 +89,7 @@ template <int N>
 OPAL_HD inline BsdfSample<N> sample_diffuse(const MaterialView& material, const SpectrumTables& tables,
                                             const PathWavelengths<N>& wavelengths, const Frame& frame, PathRandom& random) {
     BsdfSample<N> sample;
-    const float u1 = random.next(), u2 = random.next();
+    const real u1 = random.next(), u2 = random.next();
     const Vec3 direction = sample_cosine(frame.normal, u1, u2);
     sample.direction = frame.local_from_world(direction);
     sample.pdf = max_of(0.0f, sample.direction.z) / pi_f;
@@ -154,14 +154,14 @@ OPAL_HD inline BsdfSample<N> sample_bsdf(const MaterialView& material, const Spe
 /// other indices draw directions with other densities, pdf is their mean, each lane counting by its ratio: the same whichever
 /// lane leads, as the weights of connected lights must be.
 template <int N>
-OPAL_HD inline BsdfValue<N> evaluate_interface(float roughness, const PathWavelengths<N>& wavelengths,
+OPAL_HD inline BsdfValue<N> evaluate_interface(real roughness, const PathWavelengths<N>& wavelengths,
                                                const SurfaceInteraction<N>& interaction, const LaneWeights<N>& weights,
                                                Vec3 direction_out) {
     const Frame frame = interaction.frame();
     const Vec3 out = frame.local_from_world(-interaction.direction), in = frame.local_from_world(direction_out);
     if ((in.z > 0.0f) != (dot(direction_out, interaction.face_normal()) > 0.0f)) return {};
     BsdfValue<N> value = bsdf_detail::interface_at(roughness, wavelengths, interaction).evaluate(out, in);
-    float density = 0.0f, sum = 0.0f;
+    real density = 0.0f, sum = 0.0f;
     for (int i = 0; i < weights.count; ++i) {
         density += weights.ratio.v[i] * value.f_cosine.v[i];  // a lane's density, as its weight is 1
         sum += weights.ratio.v[i];
@@ -171,13 +171,13 @@ OPAL_HD inline BsdfValue<N> evaluate_interface(float roughness, const PathWavele
 }
 
 template <int N>
-OPAL_HD inline BsdfSample<N> sample_interface(float roughness, const PathWavelengths<N>& wavelengths,
+OPAL_HD inline BsdfSample<N> sample_interface(real roughness, const PathWavelengths<N>& wavelengths,
                                               const SurfaceInteraction<N>& interaction, const LaneWeights<N>& weights,
                                               PathRandom& random) {
     const Frame frame = interaction.frame();
     const Vec3 out = frame.local_from_world(-interaction.direction);
     BsdfSample<N> sample = bsdf_detail::interface_at(roughness, wavelengths, interaction).sample(out, random);
-    float ratio = 0.0f, sum = 0.0f;
+    real ratio = 0.0f, sum = 0.0f;
     for (int i = 0; i < weights.count; ++i) {
         ratio += weights.ratio.v[i] * sample.ratio.v[i];
         sum += weights.ratio.v[i];

@@ -45,8 +45,8 @@ struct alignas(16) BvhPrimitive {
 class RayBounds {
   public:
     /// `reach_mm`: largest coordinate of the bounds.
-    OPAL_HD RayBounds(const Ray& ray, float reach_mm) {
-        const float room_mm = 0x1p-20f * (max_abs(ray.origin) + reach_mm);
+    OPAL_HD RayBounds(const Ray& ray, real reach_mm) {
+        const real room_mm = 0x1p-20f * (max_abs(ray.origin) + reach_mm);
         const Vec3 room{room_mm, room_mm, room_mm};
         below_ = ray.origin + room;
         above_ = ray.origin - room;
@@ -54,19 +54,19 @@ class RayBounds {
     }
 
     /// Whether the ray is in the bounds somewhere from 0 to `max_mm`, and from where on.
-    OPAL_HD bool meets(Vec3 low, Vec3 high, float max_mm, float& enters_mm) const {
+    OPAL_HD bool meets(Vec3 low, Vec3 high, real max_mm, real& enters_mm) const {
         const Vec3 a{(low.x - below_.x) * inverse_.x, (low.y - below_.y) * inverse_.y, (low.z - below_.z) * inverse_.z};
         const Vec3 b{(high.x - above_.x) * inverse_.x, (high.y - above_.y) * inverse_.y, (high.z - above_.z) * inverse_.z};
         enters_mm = max_of(max_of(min_of(a.x, b.x), min_of(a.y, b.y)), max_of(min_of(a.z, b.z), 0.0f));
-        const float leaves_mm = min_of(min_of(max_of(a.x, b.x), max_of(a.y, b.y)), min_of(max_of(a.z, b.z), max_mm));
+        const real leaves_mm = min_of(min_of(max_of(a.x, b.x), max_of(a.y, b.y)), min_of(max_of(a.z, b.z), max_mm));
         return enters_mm <= leaves_mm;
     }
 
   private:
     /// Finite, so that 0 times it is 0: a ray across an axis that starts on a face of the bounds is in them.
-    OPAL_HD static float inverse_of(float component) {
-        constexpr float least = 1.0e-18f;
-        return 1.0f / (fabsf(component) < least ? copysignf(least, component) : component);
+    OPAL_HD static real inverse_of(real component) {
+        constexpr real least = 1.0e-18f;
+        return 1.0f / (fabs(component) < least ? copysign(least, component) : component);
     }
 
     Vec3 below_, above_, inverse_;
@@ -78,7 +78,7 @@ template <bool with_pieces>
 class BvhView {
   public:
     BvhView() = default;
-    OPAL_HD BvhView(BvhChild root, float reach_mm, const BvhNode* nodes, const BvhPrimitive* primitives, uint32_t num_primitives,
+    OPAL_HD BvhView(BvhChild root, real reach_mm, const BvhNode* nodes, const BvhPrimitive* primitives, uint32_t num_primitives,
                     const MeshView* meshes)
         : root_(root),
           reach_mm_(reach_mm),
@@ -88,9 +88,9 @@ class BvhView {
           meshes_(meshes) {}
 
     /// Nearest surface along the ray, within `max_mm`.
-    OPAL_HD bool closest(const Ray& ray, RayHit& hit, float max_mm = INFINITY) const { return walk<false>(ray, max_mm, hit); }
+    OPAL_HD bool closest(const Ray& ray, RayHit& hit, real max_mm = INFINITY) const { return walk<false>(ray, max_mm, hit); }
     /// Whether anything lies along the ray within `max_mm`.
-    OPAL_HD bool occluded(const Ray& ray, float max_mm) const {
+    OPAL_HD bool occluded(const Ray& ray, real max_mm) const {
         RayHit hit;
         return walk<true>(ray, max_mm, hit);
     }
@@ -98,12 +98,12 @@ class BvhView {
   private:
     struct Waiting {
         BvhChild child;
-        float enters_mm;
+        real enters_mm;
     };
 
     /// Nearer children first; ends with the first hit where any will do.
     template <bool any>
-    OPAL_HD bool walk(const Ray& ray, float nearest_mm, RayHit& hit) const {
+    OPAL_HD bool walk(const Ray& ray, real nearest_mm, RayHit& hit) const {
         if (num_primitives_ == 0) return false;
         const RayBounds bounds(ray, reach_mm_);
         const RayFrame frame(ray);
@@ -120,7 +120,7 @@ class BvhView {
                     }
             } else {
                 const BvhNode& node = nodes_[at.node()];
-                float first_mm, second_mm;
+                real first_mm, second_mm;
                 const bool first = bounds.meets(node.low[0], node.high[0], nearest_mm, first_mm);
                 const bool second = bounds.meets(node.low[1], node.high[1], nearest_mm, second_mm);
                 if (first && second) {
@@ -143,8 +143,7 @@ class BvhView {
     }
 
     /// Shortens `nearest_mm` to a hit.
-    OPAL_HD bool meet(const BvhPrimitive& primitive, const Ray& ray, const RayFrame& frame, float& nearest_mm,
-                      RayHit& hit) const {
+    OPAL_HD bool meet(const BvhPrimitive& primitive, const Ray& ray, const RayFrame& frame, real& nearest_mm, RayHit& hit) const {
         if (with_pieces && primitive.is_piece != 0) {
             const PatchHit on_piece = meet_piece(meshes_[primitive.mesh].patches.pieces[primitive.index], ray, nearest_mm);
             if (!on_piece.met) return false;
@@ -160,7 +159,7 @@ class BvhView {
     }
 
     BvhChild root_;
-    float reach_mm_ = 0.0f;
+    real reach_mm_ = 0.0f;
     const BvhNode* nodes_ = nullptr;
     const BvhPrimitive* primitives_ = nullptr;
     uint32_t num_primitives_ = 0;

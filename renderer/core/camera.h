@@ -11,21 +11,21 @@ struct Camera {
     Vec3 position;
     Vec3 forward;
     Vec3 right, down;
-    float aperture_radius_mm = 0.0f;
-    float focus_mm = 1.0f;  ///< along `forward`
+    real aperture_radius_mm = 0.0f;
+    real focus_mm = 1.0f;  ///< along `forward`
     bool orthographic = false;
 };
 
 /// Ray through the picture position (x, y) in [0, 1]^2, top left first; (lens_u, lens_v) in [0, 1)^2 choose the point on the
 /// lens. All rays of one picture position meet in the plane in focus.
-OPAL_HD inline Ray camera_ray(const Camera& camera, float x, float y, float lens_u, float lens_v) {
+OPAL_HD inline Ray camera_ray(const Camera& camera, real x, real y, real lens_u, real lens_v) {
     const Vec3 offset = (x - 0.5f) * camera.right + (y - 0.5f) * camera.down;
     const Vec3 origin = camera.orthographic ? camera.position + offset : camera.position;
     const Vec3 through = camera.orthographic ? camera.forward : camera.forward + offset;
     if (camera.aperture_radius_mm <= 0.0f) return {origin, camera.orthographic ? through : normalize(through)};
-    const float radius_mm = camera.aperture_radius_mm * sqrtf(lens_u), angle_rad = 2.0f * pi_f * lens_v;
+    const real radius_mm = camera.aperture_radius_mm * sqrt(lens_u), angle_rad = 2.0f * pi_f * lens_v;
     const Vec3 lens =
-        (radius_mm * cosf(angle_rad)) * normalize(camera.right) + (radius_mm * sinf(angle_rad)) * normalize(camera.down);
+        (radius_mm * cos(angle_rad)) * normalize(camera.right) + (radius_mm * sin(angle_rad)) * normalize(camera.down);
     return {origin + lens, normalize(camera.focus_mm * through - lens)};
 }
 

@@ -22,23 +22,23 @@ struct CellField {
     const int32_t* neighbors = nullptr;   ///< readable OPAL_CELL_LANES - 1 past the end
     const int32_t* start_site = nullptr;  ///< a site near each box of a coarse grid, x fastest
     Vec3 grid_origin;                     ///< object space, mm
-    float boxes_per_mm = 1.0f;
+    real boxes_per_mm = 1.0f;
     int boxes[3] = {1, 1, 1};
     int num_sites = 0;
     /// Times the distance between two sites: by how much (mm^2) the walk's single precision may err in what tells their cells
     /// apart. A boundary counts as crossed where the difference exceeds it.
-    float rounding_mm = 0.0f;
+    real rounding_mm = 0.0f;
 };
 
 /// delta of a site at a place.
-OPAL_HD inline float delta_mm(const CellSite& site, Vec3 position) {
+OPAL_HD inline real delta_mm(const CellSite& site, Vec3 position) {
     return length(position - site.position()) - site.weight_mm;
 }
 
 /// No place nearer than this to one in a cell lies in another cell; 0 where the place itself does. Half of what the nearest
 /// neighbour is behind by, as each delta is 1-Lipschitz.
-OPAL_HD inline float cell_clearance_mm(const CellField& field, Vec3 position, int cell) {
-    float second_mm = 3.0e38f;
+OPAL_HD inline real cell_clearance_mm(const CellField& field, Vec3 position, int cell) {
+    real second_mm = 3.0e38f;
     for (uint32_t k = field.first[cell]; k < field.first[cell + 1]; ++k)
         second_mm = min_of(second_mm, delta_mm(field.sites[field.neighbors[k]], position));
     return max_of(0.0f, 0.5f * (second_mm - delta_mm(field.sites[cell], position)) - field.rounding_mm);
@@ -48,7 +48,7 @@ OPAL_HD inline float cell_clearance_mm(const CellField& field, Vec3 position, in
 OPAL_HD inline int nearby_cell(const CellField& field, Vec3 position) {
     const Vec3 box = field.boxes_per_mm * (position - field.grid_origin);
     // The comparisons are written so that a place that is not a number finds a box too.
-    const auto index = [](float at, int count) { return at > 0.0f ? int(min_of(at, float(count - 1))) : 0; };
+    const auto index = [](real at, int count) { return at > 0.0f ? int(min_of(at, real(count - 1))) : 0; };
     const int x = index(box.x, field.boxes[0]), y = index(box.y, field.boxes[1]), z = index(box.z, field.boxes[2]);
     return field.start_site[(z * field.boxes[1] + y) * field.boxes[0] + x];
 }
@@ -58,11 +58,11 @@ OPAL_HD inline int nearby_cell(const CellField& field, Vec3 position) {
 /// rounding) from any start; a good one saves steps.
 OPAL_HD inline int locate_cell(const CellField& field, Vec3 position, int start) {
     int cell = start;
-    float nearest_mm = delta_mm(field.sites[cell], position);
+    real nearest_mm = delta_mm(field.sites[cell], position);
     while (true) {
         int next = cell;
         for (uint32_t k = field.first[cell]; k < field.first[cell + 1]; ++k) {
-            const float candidate_mm = delta_mm(field.sites[field.neighbors[k]], position);
+            const real candidate_mm = delta_mm(field.sites[field.neighbors[k]], position);
             if (candidate_mm < nearest_mm) {
                 nearest_mm = candidate_mm;
                 next = field.neighbors[k];

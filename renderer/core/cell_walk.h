@@ -33,7 +33,7 @@ class CellWalk {
 
     /// Goes on from `distance` to where a grain other than `current` begins, and returns it with `distance` set there. Returns 0
     /// with `distance` = `end` if there is none; may be asked again with an end farther away.
-    OPAL_HD int next_grain(int current, float& distance, float end) {
+    OPAL_HD int next_grain(int current, real& distance, real end) {
         while (true) {
             if (!exit_known_) find_exit(distance);
             if (exit_mm_ <= distance) {  // not in this cell, or no longer
@@ -63,47 +63,47 @@ class CellWalk {
     /// What one cell and the ray have in common.
     struct Passage {
         CellSite site;
-        Vec3 direction;    ///< of the ray
-        Vec3 offset;       ///< e
-        float offset2;     ///< |e|^2
-        float offset_mm;   ///< |e|
-        float foot_mm;     ///< distance of the foot along the ray
-        float tau_mm;      ///< of the present place
-        float r_mm;        ///< there
-        float climb;       ///< dr/dtau there
-        float present_mm;  ///< distance of the present place along the ray
-        float rounding_mm;
+        Vec3 direction;   ///< of the ray
+        Vec3 offset;      ///< e
+        real offset2;     ///< |e|^2
+        real offset_mm;   ///< |e|
+        real foot_mm;     ///< distance of the foot along the ray
+        real tau_mm;      ///< of the present place
+        real r_mm;        ///< there
+        real climb;       ///< dr/dtau there
+        real present_mm;  ///< distance of the present place along the ray
+        real rounding_mm;
     };
 
     /// Where the ray leaves the cell towards a neighbour; 3e38 where it does not. Free of branches.
-    OPAL_HD static float exit_towards(const Passage& at, float x, float y, float z, float weight_mm) {
-        const float sx = at.site.x - x, sy = at.site.y - y, sz = at.site.z - z;
-        const float lead = weight_mm - at.site.weight_mm;
-        const float tolerance = at.rounding_mm * (fabsf(sx) + fabsf(sy) + fabsf(sz));
-        const float a = at.direction.x * sx + at.direction.y * sy + at.direction.z * sz;
-        const float exact_gamma =
+    OPAL_HD static real exit_towards(const Passage& at, real x, real y, real z, real weight_mm) {
+        const real sx = at.site.x - x, sy = at.site.y - y, sz = at.site.z - z;
+        const real lead = weight_mm - at.site.weight_mm;
+        const real tolerance = at.rounding_mm * (fabs(sx) + fabs(sy) + fabs(sz));
+        const real a = at.direction.x * sx + at.direction.y * sy + at.direction.z * sz;
+        const real exact_gamma =
             at.offset.x * sx + at.offset.y * sy + at.offset.z * sz + 0.5f * (sx * sx + sy * sy + sz * sz - lead * lead);
-        const float h = a * at.tau_mm + exact_gamma - lead * at.r_mm;
+        const real h = a * at.tau_mm + exact_gamma - lead * at.r_mm;
         const bool sinks = a < lead * at.climb;
         const bool passed = h < (sinks ? -0.75f * tolerance : -tolerance);
-        const float gamma = sinks & (h < 0.25f * tolerance) ? exact_gamma + tolerance : exact_gamma;
+        const real gamma = sinks & (h < 0.25f * tolerance) ? exact_gamma + tolerance : exact_gamma;
 
-        const float p = (a - lead) * (a + lead);
-        const float s2 = gamma * gamma + at.offset2 * p;
-        const float ds = lead * sqrtf(s2 > 0.0f ? s2 : 0.0f);
-        const float ag = a * gamma;
+        const real p = (a - lead) * (a + lead);
+        const real s2 = gamma * gamma + at.offset2 * p;
+        const real ds = lead * sqrt(s2 > 0.0f ? s2 : 0.0f);
+        const real ag = a * gamma;
         // The form of the root whose sum does not cancel.
         const bool same_sign = ag * ds >= 0.0f;
-        const float numerator = same_sign ? ag + ds : (gamma - lead * at.offset_mm) * (gamma + lead * at.offset_mm);
-        const float denominator = same_sign ? p : ag - ds;
-        const float root_mm = at.foot_mm - numerator / denominator;
-        const float sheet = p > 0.0f ? -a : gamma * lead;
+        const real numerator = same_sign ? ag + ds : (gamma - lead * at.offset_mm) * (gamma + lead * at.offset_mm);
+        const real denominator = same_sign ? p : ag - ds;
+        const real root_mm = at.foot_mm - numerator / denominator;
+        const real sheet = p > 0.0f ? -a : gamma * lead;
         const bool leaves = (sheet > 0.0f) & (s2 >= 0.0f) & (root_mm > at.present_mm);
-        const float exit_mm = leaves ? root_mm : 3.0e38f;
+        const real exit_mm = leaves ? root_mm : 3.0e38f;
         return passed ? at.present_mm : exit_mm;
     }
 
-    OPAL_HD void find_exit(float distance) {
+    OPAL_HD void find_exit(real distance) {
         Passage at;
         at.site = field_.sites[cell_];
         at.direction = direction_;
@@ -112,20 +112,20 @@ class CellWalk {
         at.foot_mm = dot(to_site, direction_);
         at.offset = at.foot_mm * direction_ - to_site;
         at.offset2 = dot(at.offset, at.offset);
-        at.offset_mm = sqrtf(at.offset2);
+        at.offset_mm = sqrt(at.offset2);
         at.tau_mm = distance - at.foot_mm;
-        at.r_mm = sqrtf(at.tau_mm * at.tau_mm + at.offset2);
+        at.r_mm = sqrt(at.tau_mm * at.tau_mm + at.offset2);
         at.climb = at.r_mm > 0.0f ? at.tau_mm / at.r_mm : 0.0f;
         at.rounding_mm = field_.rounding_mm;
 
         // Blocks run on into the next site's neighbours: to ask about more sites than needed does no harm.
         const CellSite* sites = field_.sites;
         const uint32_t begin = field_.first[cell_], end = field_.first[cell_ + 1];
-        float exit_mm = 3.0e38f;
+        real exit_mm = 3.0e38f;
         int next_cell = cell_;
         for (uint32_t block = begin; block < end; block += OPAL_CELL_LANES) {
             const int32_t* neighbors = field_.neighbors + block;
-            float x[OPAL_CELL_LANES], y[OPAL_CELL_LANES], z[OPAL_CELL_LANES], weight_mm[OPAL_CELL_LANES];
+            real x[OPAL_CELL_LANES], y[OPAL_CELL_LANES], z[OPAL_CELL_LANES], weight_mm[OPAL_CELL_LANES];
             for (int lane = 0; lane < OPAL_CELL_LANES; ++lane) {
                 const CellSite site = sites[neighbors[lane]];
                 x[lane] = site.x;
@@ -133,7 +133,7 @@ class CellWalk {
                 z[lane] = site.z;
                 weight_mm[lane] = site.weight_mm;
             }
-            float exits_mm[OPAL_CELL_LANES];
+            real exits_mm[OPAL_CELL_LANES];
             OPAL_SIMD
             for (int lane = 0; lane < OPAL_CELL_LANES; ++lane)
                 exits_mm[lane] = exit_towards(at, x[lane], y[lane], z[lane], weight_mm[lane]);
@@ -152,7 +152,7 @@ class CellWalk {
     Vec3 origin_, direction_;
     int cell_;
     int next_cell_ = 0;
-    float exit_mm_ = 0.0f;
+    real exit_mm_ = 0.0f;
     bool exit_known_ = false;
 };
 

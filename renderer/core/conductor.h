@@ -9,22 +9,22 @@ namespace opal {
 
 /// Unpolarized Fresnel reflectance of an absorber of complex index n + i k, relative to the index before it, at 0 <= cos <= 1
 /// (Born & Wolf, section 14.2).
-OPAL_HD inline float fresnel_conductor(float cos_incident, float n, float k) {
-    const float cos2 = cos_incident * cos_incident, sin2 = 1.0f - cos2;
-    const float difference = n * n - k * k - sin2;
-    const float modulus = sqrtf(square(difference) + square(2.0f * n * k));  // of the squared normal component beyond
-    const float real = sqrtf(max_of(0.0f, 0.5f * (modulus + difference)));
-    const float cross = 2.0f * cos_incident * real;
-    const float s = (modulus + cos2 - cross) / (modulus + cos2 + cross);
-    const float sum = cos2 * modulus + sin2 * sin2;
+OPAL_HD inline real fresnel_conductor(real cos_incident, real n, real k) {
+    const real cos2 = cos_incident * cos_incident, sin2 = 1.0f - cos2;
+    const real difference = n * n - k * k - sin2;
+    const real modulus = sqrt(square(difference) + square(2.0f * n * k));  // of the squared normal component beyond
+    const real along = sqrt(max_of(0.0f, 0.5f * (modulus + difference)));
+    const real cross = 2.0f * cos_incident * along;
+    const real s = (modulus + cos2 - cross) / (modulus + cos2 + cross);
+    const real sum = cos2 * modulus + sin2 * sin2;
     return 0.5f * s * (1.0f + (sum - cross * sin2) / (sum + cross * sin2));
 }
 
 /// A metal's surface at the wavelengths of a path.
 template <int N>
 struct Conductor {
-    float roughness = 0.0f;  ///< GGX alpha; below min_roughness: a mirror
-    float n[N], k[N];        ///< over the index before the surface
+    real roughness = 0.0f;  ///< GGX alpha; below min_roughness: a mirror
+    real n[N], k[N];        ///< over the index before the surface
     int count = N;
 
     OPAL_HD bool smooth() const { return roughness < min_roughness; }
@@ -36,7 +36,7 @@ struct Conductor {
         if (smooth() || !(out.z > 0.0f) || !(in.z > 0.0f)) return value;
         const Ggx ggx{roughness};
         const Vec3 half = normalize(out + in);
-        const float cosine = dot(out, half);
+        const real cosine = dot(out, half);
         value.pdf = ggx.shadowing(out, in) * ggx.visible_density(out, half) / (4.0f * cosine);
         for (int i = 0; i < count; ++i) value.f_cosine.v[i] = value.pdf * fresnel_conductor(cosine, n[i], k[i]);
         return value;
@@ -58,10 +58,10 @@ struct Conductor {
         Vec3 direction = -out;
         bool first = true;
         for (depth.leaves(ggx, direction, random.next());; first = false) {
-            const float u1 = random.next();
+            const real u1 = random.next();
             const Vec3 half = ggx.sample_visible(-direction, u1, random.next());
-            const float cosine = min_of(1.0f, max_of(0.0f, -dot(direction, half)));
-            float largest = 0.0f;
+            const real cosine = min_of(1.0f, max_of(0.0f, -dot(direction, half)));
+            real largest = 0.0f;
             for (int i = 0; i < count; ++i) {
                 sample.weight.v[i] *= fresnel_conductor(cosine, n[i], k[i]);
                 largest = max_of(largest, sample.weight.v[i]);

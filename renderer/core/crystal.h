@@ -10,12 +10,12 @@ inline constexpr double fcc_filling = 0.74048048969306104;  ///< pi / (3 sqrt 2)
 
 /// A pair of reciprocal vectors +G and -G: one family of lattice planes. No factor 2 pi: |G| = sqrt(h^2+k^2+l^2) / a.
 struct PlanePair {
-    Vec3 normal;                   ///< unit G, lattice frame (cubic axes)
-    float g_per_nm;                ///< |G|
-    float form;                    ///< |Fourier coefficient of the permittivity| over the contrast n_sphere^2 - n_medium^2
-    int h, k, l;                   ///< of stacked crystals: hexagonal H, K and the order along the stacking axis
-    float coherence_nm = 3.0e38f;  ///< mean thickness of a block of this family where faults limit it
-    int twin = 0;                  ///< of stacked crystals: 1 a family of the lattice's own stacking, -1 of its twin's; 0 of both
+    Vec3 normal;                  ///< unit G, lattice frame (cubic axes)
+    real g_per_nm;                ///< |G|
+    real form;                    ///< |Fourier coefficient of the permittivity| over the contrast n_sphere^2 - n_medium^2
+    int h, k, l;                  ///< of stacked crystals: hexagonal H, K and the order along the stacking axis
+    real coherence_nm = 3.0e38f;  ///< mean thickness of a block of this family where faults limit it
+    int twin = 0;                 ///< of stacked crystals: 1 a family of the lattice's own stacking, -1 of its twin's; 0 of both
 };
 
 /// Enough for spheres of 1000 nm and indices of 4: |G| <= 2 n / 360 nm.
@@ -27,11 +27,11 @@ static_assert(max_tested_pairs % 8 == 0, "families are read in blocks");
 
 /// The same families side by side, as vector units read them; `form` is 0 beyond the last.
 struct PlaneFamilies {
-    float normal_x[max_tested_pairs] = {}, normal_y[max_tested_pairs] = {}, normal_z[max_tested_pairs] = {};
-    float g_per_nm[max_tested_pairs] = {};
-    float form[max_tested_pairs] = {};
-    float coherence_nm[max_tested_pairs] = {};
-    float twin[max_tested_pairs] = {};
+    real normal_x[max_tested_pairs] = {}, normal_y[max_tested_pairs] = {}, normal_z[max_tested_pairs] = {};
+    real g_per_nm[max_tested_pairs] = {};
+    real form[max_tested_pairs] = {};
+    real coherence_nm[max_tested_pairs] = {};
+    real twin[max_tested_pairs] = {};
 
     void set(int k, const PlanePair& pair) {
         normal_x[k] = pair.normal.x;
@@ -40,7 +40,7 @@ struct PlaneFamilies {
         g_per_nm[k] = pair.g_per_nm;
         form[k] = pair.form;
         coherence_nm[k] = pair.coherence_nm;
-        twin[k] = float(pair.twin);
+        twin[k] = real(pair.twin);
     }
 };
 
@@ -88,9 +88,9 @@ inline int reciprocal_pairs(const CrystalParameters& crystal, double wavelength_
                     const double root = sqrt(double(norm));
                     const double g_per_nm = root / edge_nm;
                     if (count < capacity)
-                        pairs[count] = {{float(h / root), float(k / root), float(l / root)},
-                                        float(g_per_nm),
-                                        float(fabs(sphere_form_factor(crystal.sphere_diameter_nm, g_per_nm))),
+                        pairs[count] = {{real(h / root), real(k / root), real(l / root)},
+                                        real(g_per_nm),
+                                        real(fabs(sphere_form_factor(crystal.sphere_diameter_nm, g_per_nm))),
                                         h,
                                         k,
                                         l};

@@ -13,31 +13,31 @@ struct EnvironmentView {
     const float* column_cdf = nullptr;  ///< height rows of width + 1 values: which column in the row
     int width = 0;
     int height = 0;
-    float rotation_rad = 0.0f;  ///< counter-clockwise about +Z
+    real rotation_rad = 0.0f;  ///< counter-clockwise about +Z
 };
 
-OPAL_HD inline float wrap_unit(float x) {
-    return x - floorf(x);
+OPAL_HD inline real wrap_unit(real x) {
+    return x - floor(x);
 }
 
 /// Continuous texel coordinates of a direction: u in [0, 1) with longitude from +X counter-clockwise, v in [0, 1] from +Z down.
-OPAL_HD inline void environment_uv(const EnvironmentView& environment, Vec3 direction, float& u, float& v) {
-    u = wrap_unit((atan2f(direction.y, direction.x) - environment.rotation_rad) * (0.5f / pi_f));
-    v = acosf(min_of(1.0f, max_of(-1.0f, direction.z))) * (1.0f / pi_f);
+OPAL_HD inline void environment_uv(const EnvironmentView& environment, Vec3 direction, real& u, real& v) {
+    u = wrap_unit((atan2(direction.y, direction.x) - environment.rotation_rad) * (0.5f / pi_f));
+    v = acos(min_of(1.0f, max_of(-1.0f, direction.z))) * (1.0f / pi_f);
 }
 
 /// The four texels around a direction and their shares in it, bilinear between texel centres.
 struct EnvironmentFootprint {
     const UpsampledColor* texel[4];
-    float weight[4];
+    real weight[4];
 };
 
 OPAL_HD inline EnvironmentFootprint environment_footprint(const EnvironmentView& environment, Vec3 direction) {
-    float u, v;
+    real u, v;
     environment_uv(environment, direction, u, v);
-    const float x = u * float(environment.width) - 0.5f, y = v * float(environment.height) - 0.5f;
-    const int x0 = int(floorf(x)), y0 = int(floorf(y));
-    const float tx = x - float(x0), ty = y - float(y0);
+    const real x = u * real(environment.width) - 0.5f, y = v * real(environment.height) - 0.5f;
+    const int x0 = int(floor(x)), y0 = int(floor(y));
+    const real tx = x - real(x0), ty = y - real(y0);
     const int columns[2] = {(x0 + environment.width) % environment.width, (x0 + 1) % environment.width};
     const int rows[2] = {max_of(y0, 0), min_of(y0 + 1, environment.height - 1)};
     EnvironmentFootprint footprint;
@@ -50,14 +50,14 @@ OPAL_HD inline EnvironmentFootprint environment_footprint(const EnvironmentView&
 
 /// Radiance over the illuminant's at one wavelength. The texels' spectra are mixed, not their colours or coefficients, so that
 /// the picture stays linear in radiance.
-OPAL_HD inline float environment_color(const SpectrumTables& tables, const EnvironmentFootprint& footprint, float wavelength_nm) {
-    float sum = 0.0f;
+OPAL_HD inline real environment_color(const SpectrumTables& tables, const EnvironmentFootprint& footprint, real wavelength_nm) {
+    real sum = 0.0f;
     for (int i = 0; i < 4; ++i) sum += footprint.weight[i] * upsampled(tables, *footprint.texel[i], wavelength_nm);
     return sum;
 }
 
 /// Index of the interval of a cumulative table that holds u, and the position within it.
-OPAL_HD inline int sample_cdf(const float* cdf, int count, float u, float& within) {
+OPAL_HD inline int sample_cdf(const float* cdf, int count, real u, real& within) {
     int low = 0, high = count;
     while (high - low > 1) {
         const int middle = (low + high) / 2;
@@ -68,27 +68,27 @@ OPAL_HD inline int sample_cdf(const float* cdf, int count, float u, float& withi
 }
 
 /// Probability density (1/sr) with which sample_environment draws a direction.
-OPAL_HD inline float environment_pdf(const EnvironmentView& environment, Vec3 direction) {
-    float u, v;
+OPAL_HD inline real environment_pdf(const EnvironmentView& environment, Vec3 direction) {
+    real u, v;
     environment_uv(environment, direction, u, v);
-    const int column = min_of(int(u * float(environment.width)), environment.width - 1);
-    const int row = min_of(int(v * float(environment.height)), environment.height - 1);
+    const int column = min_of(int(u * real(environment.width)), environment.width - 1);
+    const int row = min_of(int(v * real(environment.height)), environment.height - 1);
     const float* columns = environment.column_cdf + row * (environment.width + 1);
-    const float density = (environment.row_cdf[row + 1] - environment.row_cdf[row]) * (columns[column + 1] - columns[column]) *
-                          float(environment.width) * float(environment.height);
-    const float sine = sqrtf(direction.x * direction.x + direction.y * direction.y);
+    const real density = (environment.row_cdf[row + 1] - environment.row_cdf[row]) * (columns[column + 1] - columns[column]) *
+                         real(environment.width) * real(environment.height);
+    const real sine = sqrt(direction.x * direction.x + direction.y * direction.y);
     return sine > 1.0e-6f ? density / (2.0f * pi_f * pi_f * sine) : 0.0f;
 }
 
 /// Draws a direction towards the environment.
-OPAL_HD inline Vec3 sample_environment(const EnvironmentView& environment, float u1, float u2) {
-    float within_row, within_column;
+OPAL_HD inline Vec3 sample_environment(const EnvironmentView& environment, real u1, real u2) {
+    real within_row, within_column;
     const int row = sample_cdf(environment.row_cdf, environment.height, u1, within_row);
     const int column = sample_cdf(environment.column_cdf + row * (environment.width + 1), environment.width, u2, within_column);
-    const float theta_rad = pi_f * (float(row) + within_row) / float(environment.height);
-    const float phi_rad = 2.0f * pi_f * (float(column) + within_column) / float(environment.width) + environment.rotation_rad;
-    const float sine = sinf(theta_rad);
-    return normalize({sine * cosf(phi_rad), sine * sinf(phi_rad), cosf(theta_rad)});
+    const real theta_rad = pi_f * (real(row) + within_row) / real(environment.height);
+    const real phi_rad = 2.0f * pi_f * (real(column) + within_column) / real(environment.width) + environment.rotation_rad;
+    const real sine = sin(theta_rad);
+    return normalize({sine * cos(phi_rad), sine * sin(phi_rad), cos(theta_rad)});
 }
 
 }  // namespace opal

@@ -12,23 +12,23 @@ namespace opal {
 
 /// Chance of a turn for one lane, and, for a number `u` uniform in [0, 1) below that chance, by which family.
 struct EwaldChance {
-    float probability = 0.0f;
+    real probability = 0.0f;
     int pair = -1;
 };
 
 template <int N>
 OPAL_HD inline EwaldChance ewald_chance(const OpalView& opal, const LaneOptics<N>& optics, int lane, Vec3 lattice_direction,
-                                        float u) {
+                                        real u) {
     int candidates[max_tested_pairs];
-    float reflectances[max_tested_pairs];
+    real reflectances[max_tested_pairs];
     int count = 0;
-    float sum = 0.0f;
+    real sum = 0.0f;
     for (int k = 0; k < opal.num_pairs; ++k) {
         const PlanePair& pair = opal.pairs[k];
-        const float cosine = fabsf(dot(lattice_direction, pair.normal));
+        const real cosine = fabs(dot(lattice_direction, pair.normal));
         if (cosine < 1.0e-4f) continue;
-        const float bragg_nm = 2.0f * optics.n_eff[lane] * cosine / pair.g_per_nm;
-        const PolarizedReflectance<float> reflectance = ewald_fresnel_reflectance(
+        const real bragg_nm = 2.0f * optics.n_eff[lane] * cosine / pair.g_per_nm;
+        const PolarizedReflectance<real> reflectance = ewald_fresnel_reflectance(
             optics.wavelength_nm[lane] / bragg_nm - 1.0f, cosine, optics.relative_index[lane], opal.ewald_tolerance);
         if (!(ewald_miss(optics.wavelength_nm[lane] / bragg_nm - 1.0f, cosine) < opal.ewald_tolerance)) continue;
         candidates[count] = k;
@@ -37,8 +37,8 @@ OPAL_HD inline EwaldChance ewald_chance(const OpalView& opal, const LaneOptics<N
     }
     EwaldChance chance;
     if (count == 0) return chance;
-    chance.probability = sum / float(count);
-    float rest = u * float(count);
+    chance.probability = sum / real(count);
+    real rest = u * real(count);
     for (int i = 0; i < count && chance.pair < 0; ++i) {
         if (rest < reflectances[i]) chance.pair = candidates[i];
         rest -= reflectances[i];
@@ -47,8 +47,8 @@ OPAL_HD inline EwaldChance ewald_chance(const OpalView& opal, const LaneOptics<N
 }
 
 /// w + (lambda / n) G for the sense of G that faces the light, made unit: `direction` and `normal` in the same frame.
-OPAL_HD inline Vec3 ewald_direction(Vec3 direction, Vec3 normal, float g_per_nm, float wavelength_in_medium_nm) {
-    const float sense = dot(direction, normal) > 0.0f ? -1.0f : 1.0f;
+OPAL_HD inline Vec3 ewald_direction(Vec3 direction, Vec3 normal, real g_per_nm, real wavelength_in_medium_nm) {
+    const real sense = dot(direction, normal) > 0.0f ? -1.0f : 1.0f;
     return normalize(direction + (sense * wavelength_in_medium_nm * g_per_nm) * normal);
 }
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "renderer/core/compat.h"
+#include "renderer/core/real.h"
 
 /// exp and log to single precision without branches or calls, so that a path's lanes vectorize on the host. A device has its own.
 namespace opal {
@@ -50,8 +50,18 @@ OPAL_HD inline float logarithm(float x) {
 #endif
 }
 
+#if defined(OPAL_DOUBLE_TRANSPORT)
+/// Both to double precision where the transport computes in it.
+OPAL_HD inline double exponential(double x) {
+    return exp(x);
+}
+OPAL_HD inline double logarithm(double x) {
+    return log(x);
+}
+#endif
+
 /// Optical depth to the next of events that come at random: exponentially distributed with mean 1. `u` is uniform in [0, 1).
-OPAL_HD inline float free_depth(float u) {
+OPAL_HD inline real free_depth(real u) {
     return -logarithm(1.0f - u);
 }
 

@@ -12,18 +12,18 @@ using FieldGrid = nanovdb::NanoGrid<float>;
 /// One coefficient of the body that varies from place to place.
 struct FieldView {
     const FieldGrid* grid = nullptr;  ///< null: 1 everywhere
-    float voxels_per_mm = 1.0f;       ///< object space
+    real voxels_per_mm = 1.0f;        ///< object space
     Vec3 index_of_origin;             ///< index coordinates of the object's origin; voxel centres are at integers
 };
 
 /// A field at a place (object space, mm), linear between the centres of voxels.
-OPAL_HD inline float field_value(const FieldView& field, Vec3 position_mm) {
+OPAL_HD inline real field_value(const FieldView& field, Vec3 position_mm) {
     using Leaf = FieldGrid::TreeType::LeafNodeType;
     const Vec3 index = field.voxels_per_mm * position_mm + field.index_of_origin;
-    const Vec3 floor_index{floorf(index.x), floorf(index.y), floorf(index.z)};
+    const Vec3 floor_index{floor(index.x), floor(index.y), floor(index.z)};
     const Vec3 t = index - floor_index;
     const nanovdb::Coord low(int(floor_index.x), int(floor_index.y), int(floor_index.z));
-    float corner[8];  // z fastest, as in a leaf
+    real corner[8];  // z fastest, as in a leaf
     nanovdb::DefaultReadAccessor<float> accessor(field.grid->tree().root());
     constexpr int last = Leaf::DIM - 1;
     const bool one_leaf = (low[0] & last) != last && (low[1] & last) != last && (low[2] & last) != last;

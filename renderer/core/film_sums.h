@@ -19,14 +19,14 @@ OPAL_HD inline double bin_width_nm(int bin) {
 
 /// One path's wavelengths and what it found at them.
 struct FilmSample {
-    const float* wavelength_nm;
-    const float* pdf_per_nm;
-    const float* radiance;
-    const float* truncated;
+    const real* wavelength_nm;
+    const real* pdf_per_nm;
+    const real* radiance;
+    const real* truncated;
     int count;  ///< lanes in use, at most max_lanes
 
     /// What a lane adds to its bin: radiance, or throughput thrown away, per nm.
-    OPAL_HD double per_bin(const float* values, int lane) const {
+    OPAL_HD double per_bin(const real* values, int lane) const {
         const double per_density = 1.0 / (double(pdf_per_nm[lane]) * count);
         return double(values[lane]) * per_density / bin_width_nm(spectral_bin(double(wavelength_nm[lane])));
     }

@@ -21,7 +21,7 @@ struct GrainsView {
 };
 
 /// A ball of this radius about a place (object mm) in `grain`, and in `cell` where grains are cells, lies in the grain.
-OPAL_HD inline float grain_clearance_mm(const GrainsView& grains, Vec3 position, int grain, int cell) {
+OPAL_HD inline real grain_clearance_mm(const GrainsView& grains, Vec3 position, int grain, int cell) {
     if (grains.method == GrainMethod::voxels) return grain_clearance_mm(grains.voxels, position, grain);
     if (cell < 0 || grains.cells.grain[cell] != grain) return 0.0f;
     return cell_clearance_mm(grains.cells, position, cell);
@@ -50,7 +50,7 @@ class GrainPath {
     GrainPath(const GrainPath&) = delete;
     GrainPath& operator=(const GrainPath&) = delete;
 
-    OPAL_HD int next_grain(int current, float& distance, float end) {
+    OPAL_HD int next_grain(int current, real& distance, real end) {
         switch (method_) {
             case GrainMethod::cells:
                 return cells_.next_grain(current, distance, end);

@@ -14,10 +14,10 @@ namespace opal {
 /// Turning rates of every family that matters along one direction.
 template <int N>
 struct GrainRates {
-    float rate_per_mm[N][max_tested_pairs];  ///< per lane; element i is that of family pair[i]
+    real rate_per_mm[N][max_tested_pairs];  ///< per lane; element i is that of family pair[i]
     int pair[max_tested_pairs];
     int count = 0;
-    float total_per_mm[N];
+    real total_per_mm[N];
     Vec3 direction;  ///< world
 };
 
@@ -27,17 +27,17 @@ struct GrainVisit {
     int cell = -1;                   ///< where the light is, or nearly; -1: not known, or grains are not made of cells
     bool fresh = true;               ///< nothing below is drawn yet
     bool at_boundary = false;        ///< the stay begins where the light comes in from outside the grain
-    float block_nm = 0.0f;           ///< thickness of a coherent block
-    float block_factor = 1.0f;       ///< this stay's, on the mean thickness of blocks
-    float own_excess = 1.0f;         ///< twins: see own_twin_excess
+    real block_nm = 0.0f;            ///< thickness of a coherent block
+    real block_factor = 1.0f;        ///< this stay's, on the mean thickness of blocks
+    real own_excess = 1.0f;          ///< twins: see own_twin_excess
     uint64_t p_polarized = 0;        ///< a bit per family: how the light is polarized towards it
-    float max_rate_per_mm = 0.0f;    ///< where rates saturate
+    real max_rate_per_mm = 0.0f;     ///< where rates saturate
     Quaternion object_from_lattice;  ///< with the tilt of this stay
     GrainRates<N> rates[2];          ///< along the present direction and along the one before
     int current = 0;                 ///< which of the two is the present one
     bool present_known = false;
-    int link = -1;          ///< family that turns one into the other; -1: the other is not known
-    float clear_mm = 0.0f;  ///< no surface lies nearer to where the present flight starts
+    int link = -1;         ///< family that turns one into the other; -1: the other is not known
+    real clear_mm = 0.0f;  ///< no surface lies nearer to where the present flight starts
 
     OPAL_HD const GrainRates<N>& present() const { return rates[current]; }
     /// The next flight starts a new stay: after scattering, or at the surface.
@@ -59,21 +59,21 @@ struct GrainVisit {
 
 /// Triangular factor in [0.5, 1.5] on the mean thickness of a block: the spread of block sizes washes out fringes that no real
 /// opal shows.
-OPAL_HD inline float draw_block_factor(PathRandom& random) {
+OPAL_HD inline real draw_block_factor(PathRandom& random) {
     return 0.5f + 0.5f * (random.next() + random.next());
 }
 
 /// Of the layers of a grain of n layers that starts in the lattice's own sense, the mean part by which those of that sense
 /// outnumber the twin's: each layer keeps the sense but for a probability `fault`, so that after m layers the excess is exp(-2
 /// fault m).
-OPAL_HD inline float own_twin_excess(float fault, float layers) {
-    const float x = 2.0f * fault * layers;
-    return x > 1.0e-4f ? -expm1f(-x) / x : 1.0f;
+OPAL_HD inline real own_twin_excess(real fault, real layers) {
+    const real x = 2.0f * fault * layers;
+    return x > 1.0e-4f ? -expm1(-x) / x : 1.0f;
 }
 
 template <int N>
 OPAL_HD inline void begin_visit(const OpalView& opal, GrainVisit<N>& visit, PathRandom& random) {
-    const float size_mm = opal.grain_size_mm[visit.grain - 1] * opal.world_from_object.scale;
+    const real size_mm = opal.grain_size_mm[visit.grain - 1] * opal.world_from_object.scale;
     visit.block_factor = draw_block_factor(random);
     visit.block_nm = min_of(visit.block_factor * opal.coherence_nm, size_mm * 1.0e6f);
     visit.own_excess = own_twin_excess(opal.fault, size_mm * 1.0e6f / opal.layer_nm);
@@ -81,7 +81,7 @@ OPAL_HD inline void begin_visit(const OpalView& opal, GrainVisit<N>& visit, Path
     visit.max_rate_per_mm = opal.max_odds / size_mm;
     visit.object_from_lattice = opal.orientations[visit.grain - 1];
     if (opal.mosaic_kappa > 0.0f) {
-        const float u1 = random.next(), u2 = random.next(), u3 = random.next(), u4 = random.next();
+        const real u1 = random.next(), u2 = random.next(), u3 = random.next(), u4 = random.next();
         visit.object_from_lattice = visit.object_from_lattice * sample_mosaic_tilt(opal.mosaic_kappa, u1, u2, u3, u4);
     }
     visit.fresh = false;
@@ -91,8 +91,8 @@ OPAL_HD inline void begin_visit(const OpalView& opal, GrainVisit<N>& visit, Path
 
 /// Families as light of one direction and one stay meets them.
 struct MetFamilies {
-    float cosine[max_tested_pairs];     ///< |w . g|
-    float polarized[max_tested_pairs];  ///< 1: p, in the plane of incidence; 0: s
+    real cosine[max_tested_pairs];     ///< |w . g|
+    real polarized[max_tested_pairs];  ///< 1: p, in the plane of incidence; 0: s
 };
 
 /// Lists the families within an octave of their Bragg wavelength at one lane or another in `rates.pair`, in ascending order: no
@@ -101,9 +101,9 @@ template <int N>
 OPAL_HD inline void list_near_families(const OpalView& opal, const LaneOptics<N>& optics, const GrainVisit<N>& visit,
                                        Vec3 lattice_direction, MetFamilies& met, GrainRates<N>& rates) {
     // Twice the cosine over g, times n / lambda, is the ratio of wavelengths, which has to lie between 1/2 and 2.
-    float smallest = optics.n_eff[0] / optics.wavelength_nm[0], largest = smallest;
+    real smallest = optics.n_eff[0] / optics.wavelength_nm[0], largest = smallest;
     for (int i = 1; i < N; ++i) {
-        const float n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
+        const real n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
         smallest = min_of(smallest, n_over_lambda);
         largest = max_of(largest, n_over_lambda);
     }
@@ -118,10 +118,10 @@ OPAL_HD inline void list_near_families(const OpalView& opal, const LaneOptics<N>
         OPAL_SIMD
         for (int j = 0; j < beam_block_size; ++j) {
             const int k = first + j;
-            const float cosine = fabsf(lattice_direction.x * families.normal_x[k] + lattice_direction.y * families.normal_y[k] +
-                                       lattice_direction.z * families.normal_z[k]);
+            const real cosine = fabs(lattice_direction.x * families.normal_x[k] + lattice_direction.y * families.normal_y[k] +
+                                     lattice_direction.z * families.normal_z[k]);
             met.cosine[k] = cosine;
-            met.polarized[k] = float((bits >> j) & 1u);
+            met.polarized[k] = real((bits >> j) & 1u);
             near[j] = (4.0f * cosine * largest >= families.g_per_nm[k]) & (cosine * smallest <= families.g_per_nm[k]) &
                       (cosine >= 1.0e-4f) & (families.form[k] > 0.0f);
         }
@@ -168,10 +168,10 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
     MetFamilies met;
     list_near_families(opal, optics, visit, lattice_direction, met, rates);
     if (rates.count == 0) return;
-    float totals[N][beam_block_size] = {};
+    real totals[N][beam_block_size] = {};
     for (int first = 0; first < rates.count; first += beam_block_size) {
         const BeamBlock beams = beams_at(opal, visit, met, rates, first);
-        float block_rates[N][beam_block_size];
+        real block_rates[N][beam_block_size];
         if (opal.diffraction == Diffraction::laue)
             laue_rates(beams, optics, visit.max_rate_per_mm, block_rates);
         else
@@ -191,10 +191,10 @@ OPAL_HD inline void evaluate_rates(const OpalView& opal, const LaneOptics<N>& op
 /// Which family turns the hero, given that one does and that it is not family `other` (-1: any): by its rate; `rest` is drawn
 /// uniformly in [0, the sum of their rates). Returns an index into the rates; -1 if there is no such family.
 template <int N>
-OPAL_HD inline int choose_family(const GrainRates<N>& rates, float rest, int other = -1) {
+OPAL_HD inline int choose_family(const GrainRates<N>& rates, real rest, int other = -1) {
     int chosen = -1;
     for (int i = 0; i < rates.count; ++i) {
-        const float rate = rates.rate_per_mm[0][i];
+        const real rate = rates.rate_per_mm[0][i];
         if (i == other || !(rate > 0.0f)) continue;
         chosen = i;  // rounding can carry `rest` past the last family; never onto one that does not turn
         if (rest < rate) break;

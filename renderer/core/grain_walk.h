@@ -12,16 +12,16 @@ using GrainGrid = nanovdb::NanoGrid<int32_t>;
 /// Where the grains of an opal are: the labelled voxels and their placement in the object's own space.
 struct GrainField {
     const GrainGrid* grid = nullptr;
-    float voxels_per_mm = 1.0f;  ///< object space
-    Vec3 index_of_origin;        ///< index coordinates of the object's origin; voxel centres are at integers
+    real voxels_per_mm = 1.0f;  ///< object space
+    Vec3 index_of_origin;       ///< index coordinates of the object's origin; voxel centres are at integers
 };
 
 /// A ball about a place (object mm) that holds no grain but `grain`: half a voxel where the voxels that such a ball can touch are
 /// all the grain's, else 0.
-OPAL_HD inline float grain_clearance_mm(const GrainField& field, Vec3 position_mm, int grain) {
+OPAL_HD inline real grain_clearance_mm(const GrainField& field, Vec3 position_mm, int grain) {
     // Voxels [i - 1/2, i + 1/2): a cube of edge one about the place touches those of the eight nearest centres.
     const Vec3 index = field.voxels_per_mm * position_mm + field.index_of_origin;
-    const nanovdb::Coord low(int(floorf(index.x)), int(floorf(index.y)), int(floorf(index.z)));
+    const nanovdb::Coord low(int(floor(index.x)), int(floor(index.y)), int(floor(index.z)));
     nanovdb::DefaultReadAccessor<int32_t> accessor(field.grid->tree().root());
     for (int k = 0; k < 8; ++k)
         if (accessor.getValue(low + nanovdb::Coord(k >> 2, (k >> 1) & 1, k & 1)) != grain) return 0.0f;
@@ -38,13 +38,13 @@ class GrainWalk {
         // A voxel with centre i covers [i - 1/2, i + 1/2): shifted by half so that floor finds it.
         origin_ = field.voxels_per_mm * origin + field.index_of_origin + Vec3{0.5f, 0.5f, 0.5f};
         inverse_ = {1.0f / direction_.x, 1.0f / direction_.y, 1.0f / direction_.z};
-        voxel_ = {int(floorf(origin_.x)), int(floorf(origin_.y)), int(floorf(origin_.z))};
+        voxel_ = {int(floor(origin_.x)), int(floor(origin_.y)), int(floor(origin_.z))};
     }
 
     /// Goes on from `distance` to where a grain other than `current` begins, and returns it with `distance` set there. Unlabelled
     /// voxels (0: those cut by the surface) belong to the grain before them. Returns 0 with `distance` = `end` if there is none;
     /// may be asked again with an end farther away.
-    OPAL_HD int next_grain(int current, float& distance, float end) {
+    OPAL_HD int next_grain(int current, real& distance, real end) {
         while (true) {
             if (entered_ > 0.0f && entered_ >= end) {
                 distance = end;
@@ -58,23 +58,23 @@ class GrainWalk {
     }
 
   private:
-    OPAL_HD static float exit_distance(float direction, float inverse, float origin, int low, int size) {
+    OPAL_HD static real exit_distance(real direction, real inverse, real origin, int low, int size) {
         if (direction == 0.0f) return 3.0e38f;
-        return (float(direction > 0.0f ? low + size : low) - origin) * inverse;
+        return (real(direction > 0.0f ? low + size : low) - origin) * inverse;
     }
 
-    OPAL_HD static int entered_index(float direction, int low, int size) { return direction > 0.0f ? low + size : low - 1; }
+    OPAL_HD static int entered_index(real direction, int low, int size) { return direction > 0.0f ? low + size : low - 1; }
 
-    OPAL_HD static int clamped_index(float position, int low, int size) {
-        return min_of(max_of(int(floorf(position)), low), low + size - 1);
+    OPAL_HD static int clamped_index(real position, int low, int size) {
+        return min_of(max_of(int(floor(position)), low), low + size - 1);
     }
 
-    OPAL_HD void leave_box(int size, float& distance) {
+    OPAL_HD void leave_box(int size, real& distance) {
         const int low_x = voxel_[0] & ~(size - 1), low_y = voxel_[1] & ~(size - 1), low_z = voxel_[2] & ~(size - 1);
-        const float exit_x = exit_distance(direction_.x, inverse_.x, origin_.x, low_x, size);
-        const float exit_y = exit_distance(direction_.y, inverse_.y, origin_.y, low_y, size);
-        const float exit_z = exit_distance(direction_.z, inverse_.z, origin_.z, low_z, size);
-        const float exit = min_of(exit_x, min_of(exit_y, exit_z));
+        const real exit_x = exit_distance(direction_.x, inverse_.x, origin_.x, low_x, size);
+        const real exit_y = exit_distance(direction_.y, inverse_.y, origin_.y, low_y, size);
+        const real exit_z = exit_distance(direction_.z, inverse_.z, origin_.z, low_z, size);
+        const real exit = min_of(exit_x, min_of(exit_y, exit_z));
         distance = max_of(distance, exit);
         const Vec3 position = origin_ + distance * direction_;
         voxel_ = {
@@ -86,7 +86,7 @@ class GrainWalk {
     nanovdb::DefaultReadAccessor<int32_t> accessor_;
     Vec3 origin_, direction_, inverse_;
     nanovdb::Coord voxel_;
-    float entered_ = 0.0f;  ///< where the ray comes into that voxel
+    real entered_ = 0.0f;  ///< where the ray comes into that voxel
 };
 
 }  // namespace opal

@@ -14,18 +14,18 @@ namespace opal {
 /// is lost leaves the walk in a cell where it no longer is. Here to be compared: see CellWalk for what to use. Offers the same.
 class HyperboloidWalk {
   public:
-    static constexpr float epsilon_mm = 1.0e-4f;
+    static constexpr real epsilon_mm = 1.0e-4f;
 
     OPAL_HD HyperboloidWalk(const CellField& field, Vec3 origin, Vec3 direction, int cell = -1)
         : field_(field), origin_(origin), direction_(direction) {
         cell_ = locate_cell(field, origin, cell < 0 ? nearby_cell(field, origin) : cell);
     }
 
-    OPAL_HD int next_grain(int current, float& distance, float end) {
+    OPAL_HD int next_grain(int current, real& distance, real end) {
         while (true) {
             const int grain = field_.grain[cell_];
             if (grain != current) return grain;
-            const float exit_mm = find_exit(distance + epsilon_mm);
+            const real exit_mm = find_exit(distance + epsilon_mm);
             if (!(exit_mm < end)) {
                 distance = end;
                 return 0;
@@ -38,22 +38,22 @@ class HyperboloidWalk {
     OPAL_HD int cell() const { return cell_; }
 
   private:
-    OPAL_HD float find_exit(float after_mm) const {
+    OPAL_HD real find_exit(real after_mm) const {
         const CellSite site = field_.sites[cell_];
         const Vec3 u = origin_ - site.position();
-        const float b = dot(u, direction_), c = dot(u, u);
-        float exit_mm = 3.0e38f;
+        const real b = dot(u, direction_), c = dot(u, u);
+        real exit_mm = 3.0e38f;
         for (uint32_t k = field_.first[cell_]; k < field_.first[cell_ + 1]; ++k) {
             const CellSite neighbor = field_.sites[field_.neighbors[k]];
             const Vec3 s = site.position() - neighbor.position();
-            const float lead = neighbor.weight_mm - site.weight_mm, four_lead2 = 4.0f * lead * lead;
-            const float a1 = 2.0f * dot(direction_, s), b1 = 2.0f * dot(u, s) + dot(s, s) - lead * lead;
-            const float qa = a1 * a1 - four_lead2, qb = 2.0f * (a1 * b1 - four_lead2 * b), qc = b1 * b1 - four_lead2 * c;
-            const float discriminant = qb * qb - 4.0f * qa * qc;
+            const real lead = neighbor.weight_mm - site.weight_mm, four_lead2 = 4.0f * lead * lead;
+            const real a1 = 2.0f * dot(direction_, s), b1 = 2.0f * dot(u, s) + dot(s, s) - lead * lead;
+            const real qa = a1 * a1 - four_lead2, qb = 2.0f * (a1 * b1 - four_lead2 * b), qc = b1 * b1 - four_lead2 * c;
+            const real discriminant = qb * qb - 4.0f * qa * qc;
             if (!(discriminant >= 0.0f)) continue;
-            const float root = sqrtf(discriminant);
-            const float roots_mm[2] = {(-qb - root) / (2.0f * qa), (-qb + root) / (2.0f * qa)};
-            for (const float root_mm : roots_mm)
+            const real root = sqrt(discriminant);
+            const real roots_mm[2] = {(-qb - root) / (2.0f * qa), (-qb + root) / (2.0f * qa)};
+            for (const real root_mm : roots_mm)
                 if (root_mm > after_mm) exit_mm = min_of(exit_mm, root_mm);
         }
         return exit_mm;

@@ -47,7 +47,7 @@ struct InteriorEvent {
 /// Two-beam theory speaks of one strong family at a time.
 template <int N>
 OPAL_HD inline bool is_multi_beam(const OpalView& opal, const GrainVisit<N>& visit) {
-    const float half_per_mm = visit.max_rate_per_mm / (opal.max_odds + 1.0f);  // odds 1 over the grain's size, saturated
+    const real half_per_mm = visit.max_rate_per_mm / (opal.max_odds + 1.0f);  // odds 1 over the grain's size, saturated
     int strong = 0;
     for (int i = 0; i < visit.present().count; ++i) strong += visit.present().rate_per_mm[0][i] > half_per_mm ? 1 : 0;
     return strong > 1;
@@ -71,7 +71,7 @@ OPAL_HD inline void prepare_visit(const OpalView& opal, const LaneOptics<N>& opt
 
 /// Every lane's probability of flying `length_mm` without a turn, over the hero's.
 template <int N>
-OPAL_HD inline void pass_planes(const GrainRates<N>& rates, float length_mm, LaneWeights<N>& weights) {
+OPAL_HD inline void pass_planes(const GrainRates<N>& rates, real length_mm, LaneWeights<N>& weights) {
     OPAL_SIMD
     for (int i = 1; i < N; ++i) weights.ratio.v[i] *= exponential((rates.total_per_mm[0] - rates.total_per_mm[i]) * length_mm);
 }
@@ -88,7 +88,7 @@ OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& 
                                      GrainVisit<N>& visit, LaneWeights<N>& weights, PathRandom& random, Vec3& turned) {
     visit.at_boundary = false;
     const Vec3 lattice_direction = visit.object_from_lattice.conjugate().rotate(object_direction);
-    const float u = random.next();
+    const real u = random.next();
     const EwaldChance hero = ewald_chance(opal, optics, 0, lattice_direction, u);
     if (hero.pair < 0) {
         for (int i = 1; i < weights.count; ++i)
@@ -107,9 +107,9 @@ OPAL_HD inline bool turn_at_boundary(const OpalView& opal, const LaneOptics<N>& 
 
 /// No surface lies nearer (world mm) to a place inside the opal (object mm): its depth by the level set, less a voxel for what
 /// the triangles may deviate from it.
-OPAL_HD inline float clearance_mm(const OpalView& opal, Vec3 place) {
+OPAL_HD inline real clearance_mm(const OpalView& opal, Vec3 place) {
     if (!opal.shape.grid) return 0.0f;
-    const float depth_mm = -field_value(opal.shape, place);
+    const real depth_mm = -field_value(opal.shape, place);
     return max_of(0.0f, depth_mm - 1.0f / opal.shape.voxels_per_mm) * opal.world_from_object.scale;
 }
 
@@ -130,7 +130,7 @@ OPAL_HD inline void scatter(const OpalView& opal, const PathWavelengths<N>& wave
 
 /// Fewer flights than these between a place and the surface are not worth an exchange; with more than these one need not know
 /// better how far the surface is.
-inline constexpr float exchange_min_flights = 0.5f, exchange_many_flights = 8.0f;
+inline constexpr real exchange_min_flights = 0.5f, exchange_many_flights = 8.0f;
 
 /// Lets the light go back and forth between two beams from the ray's origin. Returns whether that ended by an event, to which it
 /// has brought `event`; else `ray` is moved to the beginning of `next`, the flight that may leave the grain or the body.
@@ -141,8 +141,8 @@ OPAL_HD inline bool exchange_in_grain(const OpalView& opal, const PathWavelength
                                       PathRandom& random, PathCounters& counters, PlannedTurn& next, InteriorEvent& event,
                                       bool& clear_known) {
     const RigidTransform& world_from_object = opal.world_from_object;
-    const float object_per_world = 1.0f / world_from_object.scale;
-    const float flights_per_mm = visit.present().total_per_mm[0];
+    const real object_per_world = 1.0f / world_from_object.scale;
+    const real flights_per_mm = visit.present().total_per_mm[0];
     const Vec3 place = world_from_object.local_from_world_point(ray.origin);
     if (visit.clear_mm * flights_per_mm < exchange_many_flights) {
         visit.clear_mm = max_of(visit.clear_mm, clearance_mm(opal, place));
@@ -155,7 +155,7 @@ OPAL_HD inline bool exchange_in_grain(const OpalView& opal, const PathWavelength
     region.keep_in_ball(visit.clear_mm * object_per_world);
     const BeamExchange exchange = exchange_beams(visit, region, object_per_world, flight.scatter_distance_mm(), random);
     next = exchange.next;
-    const float path_mm = exchange.path_mm();
+    const real path_mm = exchange.path_mm();
     const uint64_t turns = uint64_t(exchange.turns[0] + exchange.turns[1]);
     if (turns == 0 && path_mm == 0.0f) return false;
     clear_known = false;
@@ -189,7 +189,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
     MediumFlight<N> flight(opal, medium, ray, weights, random, counters.majorant_violations);
     InteriorEvent event{InteriorEventKind::surface, ray.origin, ray.direction, false};
     if (opal.diffraction != Diffraction::none && opal.num_pairs > 0) {
-        const float scale = opal.world_from_object.scale;
+        const real scale = opal.world_from_object.scale;
         PlannedTurn planned;
         bool clear_known = false;
         if (visit.grain != 0 && !visit.fresh && visit.link >= 0 && flight.closed_form()) {
@@ -201,13 +201,13 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
         const Vec3 direction = opal.world_from_object.local_from_world_direction(ray.direction);
         const Vec3 origin = opal.world_from_object.local_from_world_point(ray.origin);
         GrainPath walk(opal.grains, origin, direction, visit.cell);
-        float reached = 0.0f;  // object mm, like everything on the walk
-        float entered_mm = 0.0f;
+        real reached = 0.0f;  // object mm, like everything on the walk
+        real entered_mm = 0.0f;
         if (visit.grain == 0) {
             visit.enter(walk.next_grain(0, reached, surface.distance_mm() / scale));
             visit.cell = walk.cell();
         }
-        float clear_mm = visit.clear_mm;  // no surface within this distance of the origin
+        real clear_mm = visit.clear_mm;  // no surface within this distance of the origin
         while (visit.grain != 0) {
             prepare_visit(opal, optics, ray.direction, visit, random, counters);
             Vec3 turned;
@@ -217,13 +217,13 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                 return {InteriorEventKind::diffraction, ray.origin + entered_mm * ray.direction, turned, false};
             }
             const GrainRates<N>& rates = visit.present();
-            const float total_per_mm = rates.total_per_mm[0];
-            float turn_mm = 3.0e38f;
+            const real total_per_mm = rates.total_per_mm[0];
+            real turn_mm = 3.0e38f;
             if (planned.family >= 0)
                 turn_mm = planned.length_mm;
             else if (total_per_mm > 0.0f)
                 turn_mm = entered_mm + free_depth(random.next()) / total_per_mm;
-            float surface_mm = 3.0e38f;
+            real surface_mm = 3.0e38f;
             // As far as surely no surface is; then as far as there may be one.
             int next = 0;
             if (clear_mm > entered_mm) next = walk.next_grain(visit.grain, reached, min_of(clear_mm, turn_mm) / scale);
@@ -235,15 +235,15 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
             }
             if (next == 0 && turn_mm > clear_mm) {
                 // A turn or a scattering far before the grain's other side mostly is what comes next.
-                const float event_mm = min_of(turn_mm, flight.scatter_distance_mm());
-                const float near_mm = entered_mm + scale * opal.grain_size_mm[visit.grain - 1];
+                const real event_mm = min_of(turn_mm, flight.scatter_distance_mm());
+                const real near_mm = entered_mm + scale * opal.grain_size_mm[visit.grain - 1];
                 surface_mm = event_mm < near_mm ? surface.distance_mm(event_mm) : surface.distance_mm();
                 next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
             }
             visit.cell = walk.cell();
-            const float leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);
-            const float end_mm = min_of(min_of(turn_mm, leaves_mm), surface_mm);
-            const float passed_mm = flight.advance(end_mm, weights);
+            const real leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);
+            const real end_mm = min_of(min_of(turn_mm, leaves_mm), surface_mm);
+            const real passed_mm = flight.advance(end_mm, weights);
             pass_planes(rates, passed_mm - entered_mm, weights);
             if (flight.scattered()) break;
             if (turn_mm <= end_mm) {
@@ -264,7 +264,7 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
         }
     }
     // Where it scattered in the grains, it goes no farther.
-    const float end_mm = flight.scattered() ? flight.scatter_distance_mm() : surface.distance_mm();
+    const real end_mm = flight.scattered() ? flight.scatter_distance_mm() : surface.distance_mm();
     event.position = ray.origin + flight.advance(end_mm, weights) * ray.direction;
     event.direction = ray.direction;
     if (flight.scattered()) scatter(opal, wavelengths, flight.local(), visit, weights, random, counters, event);

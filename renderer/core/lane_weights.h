@@ -18,10 +18,10 @@ struct LaneWeights {
 
     /// Weight of each lane's contribution; an average over the lanes in use gives the estimate.
     OPAL_HD Lanes<N> contribution() const {
-        float sum = 0.0f;
+        real sum = 0.0f;
         for (int i = 0; i < count; ++i) sum += ratio.v[i];
         Lanes<N> weights;
-        for (int i = 0; i < count; ++i) weights.v[i] = throughput.v[i] * ratio.v[i] * (float(count) / sum);
+        for (int i = 0; i < count; ++i) weights.v[i] = throughput.v[i] * ratio.v[i] * (real(count) / sum);
         return weights;
     }
 

@@ -9,63 +9,63 @@ namespace opal {
 
 struct LightView {
     LightGeometry geometry;
-    float cos_cone = -1.0f;           ///< spot: beyond this angle from the normal it is dark
-    float cos_full = -1.0f;           ///< spot: within this one it shines fully
+    real cos_cone = -1.0f;            ///< spot: beyond this angle from the normal it is dark
+    real cos_full = -1.0f;            ///< spot: within this one it shines fully
     const float* radiance = nullptr;  ///< 1 nm table: spectral radiance in the film's unit
-    float luminance = 0.0f;           ///< of it
+    real luminance = 0.0f;            ///< of it
     bool visible = true;              ///< to the camera directly
 };
 
 struct LightsView {
     const LightView* lights = nullptr;
     int count = 0;
-    float environment_luminance = 0.0f;  ///< mean over all directions
+    real environment_luminance = 0.0f;  ///< mean over all directions
 };
 
 /// The part of a light's radiance that it sends along `direction` (unit, away from it): spots fade towards their cone's edge.
-OPAL_HD inline float light_falloff(const LightView& light, Vec3 direction) {
+OPAL_HD inline real light_falloff(const LightView& light, Vec3 direction) {
     if (light.cos_cone <= -1.0f) return 1.0f;
-    const float t = (dot(direction, light.geometry.normal) - light.cos_cone) / max_of(1.0e-7f, light.cos_full - light.cos_cone);
-    const float clamped = max_of(0.0f, min_of(1.0f, t));
+    const real t = (dot(direction, light.geometry.normal) - light.cos_cone) / max_of(1.0e-7f, light.cos_full - light.cos_cone);
+    const real clamped = max_of(0.0f, min_of(1.0f, t));
     return clamped * clamped * (3.0f - 2.0f * clamped);
 }
 
 /// Spectral radiance that a ray of `direction` finds where it meets the light.
-OPAL_HD inline float light_radiance(const LightView& light, Vec3 direction, float wavelength_nm) {
+OPAL_HD inline real light_radiance(const LightView& light, Vec3 direction, real wavelength_nm) {
     return light_falloff(light, -direction) * table_at(light.radiance, wavelength_nm);
 }
 
 struct LightHit {
     int light = -1;
-    float distance_mm = 0.0f;
+    real distance_mm = 0.0f;
     bool shines = false;  ///< the side that does was met
 };
 
 /// The nearest light that a ray meets within `max_mm`. Lights stop rays from either side. `direct`: the ray comes straight from
 /// the camera, which passes those that it is not to see.
-OPAL_HD inline bool intersect_lights(const LightsView& view, const Ray& ray, float max_mm, bool direct, LightHit& hit) {
+OPAL_HD inline bool intersect_lights(const LightsView& view, const Ray& ray, real max_mm, bool direct, LightHit& hit) {
     hit = {-1, max_mm, false};
     for (int i = 0; i < view.count; ++i) {
         const LightView& light = view.lights[i];
         if (direct && !light.visible) continue;
-        const float distance_mm = light_distance(light.geometry, ray);
+        const real distance_mm = light_distance(light.geometry, ray);
         if (distance_mm > 0.0f && distance_mm < hit.distance_mm) hit = {i, distance_mm, light_faces(light.geometry, ray.origin)};
     }
     return hit.light >= 0;
 }
 
 /// Whether a light other than `target` stands in the way.
-OPAL_HD inline bool lights_occlude(const LightsView& view, const Ray& ray, float max_mm, int target) {
+OPAL_HD inline bool lights_occlude(const LightsView& view, const Ray& ray, real max_mm, int target) {
     for (int i = 0; i < view.count; ++i) {
         if (i == target) continue;
-        const float distance_mm = light_distance(view.lights[i].geometry, ray);
+        const real distance_mm = light_distance(view.lights[i].geometry, ray);
         if (distance_mm > 0.0f && distance_mm < max_mm) return true;
     }
     return false;
 }
 
 /// About how much light a point gets from a light when it faces it: luminance times solid angle.
-OPAL_HD inline float light_importance(const LightView& light, Vec3 from) {
+OPAL_HD inline real light_importance(const LightView& light, Vec3 from) {
     const LightGeometry& geometry = light.geometry;
     if (!light_faces(geometry, from)) return 0.0f;
     switch (geometry.shape) {
@@ -81,12 +81,12 @@ OPAL_HD inline float light_importance(const LightView& light, Vec3 from) {
     return light.luminance * min_of(2.0f * pi_f, light_area_mm2(geometry) / dot(to, to));
 }
 
-OPAL_HD inline float environment_importance(const LightsView& view) {
+OPAL_HD inline real environment_importance(const LightsView& view) {
     return view.environment_luminance * 2.0f * pi_f;
 }
 
-OPAL_HD inline float total_importance(const LightsView& view, Vec3 from) {
-    float sum = environment_importance(view);
+OPAL_HD inline real total_importance(const LightsView& view, Vec3 from) {
+    real sum = environment_importance(view);
     for (int i = 0; i < view.count; ++i) sum += light_importance(view.lights[i], from);
     return sum;
 }
@@ -95,8 +95,8 @@ OPAL_HD inline float total_importance(const LightsView& view, Vec3 from) {
 inline constexpr int environment_light = -1;
 
 /// Density (1/sr) with which sample_light draws `direction` for a light that it meets: the environment, or one of the lights.
-OPAL_HD inline float light_pdf(const LightsView& view, const EnvironmentView& environment, Vec3 from, Vec3 direction, int light) {
-    const float total = total_importance(view, from);
+OPAL_HD inline real light_pdf(const LightsView& view, const EnvironmentView& environment, Vec3 from, Vec3 direction, int light) {
+    const real total = total_importance(view, from);
     if (!(total > 0.0f)) return 0.0f;
     if (light == environment_light)
         return environment_importance(view) > 0.0f
@@ -109,21 +109,21 @@ OPAL_HD inline float light_pdf(const LightsView& view, const EnvironmentView& en
 /// A direction towards one of the lights.
 struct LightSample {
     Vec3 direction;
-    float distance_mm = 3.0e38f;  ///< to it; infinite for the environment and the sun
-    float pdf = 0.0f;             ///< 1/sr, with the probability that this light was chosen; 0: nothing drawn
+    real distance_mm = 3.0e38f;  ///< to it; infinite for the environment and the sun
+    real pdf = 0.0f;             ///< 1/sr, with the probability that this light was chosen; 0: nothing drawn
     int light = environment_light;
 };
 
 /// Chooses the environment or a light by `u`, in proportion to about what they send to the point, and draws a direction to it.
-OPAL_HD inline LightSample sample_light(const LightsView& view, const EnvironmentView& environment, Vec3 from, float u, float u1,
-                                        float u2) {
+OPAL_HD inline LightSample sample_light(const LightsView& view, const EnvironmentView& environment, Vec3 from, real u, real u1,
+                                        real u2) {
     LightSample sample;
-    const float total = total_importance(view, from);
+    const real total = total_importance(view, from);
     if (!(total > 0.0f)) return sample;
-    float rest = u * total - environment_importance(view);
+    real rest = u * total - environment_importance(view);
     if (rest >= 0.0f)
         for (int i = 0; i < view.count; ++i) {
-            const float importance = light_importance(view.lights[i], from);
+            const real importance = light_importance(view.lights[i], from);
             if (importance > 0.0f) sample.light = i;  // rounding can carry `rest` past the last one
             if (rest < importance) break;
             rest -= importance;

@@ -20,7 +20,7 @@ struct MajorantView {
     const MajorantCell* cells = nullptr;  ///< x fastest; null where no coefficient varies
     int size[3] = {0, 0, 0};
     Vec3 low_mm;  ///< object space
-    float cells_per_mm = 0.0f;
+    real cells_per_mm = 0.0f;
 };
 
 /// Walks a ray from cell to cell (Amanatides & Woo 1987). Every exit distance follows from the cell's own faces, so that errors
@@ -33,12 +33,12 @@ class MajorantWalk {
     OPAL_HD void start(const MajorantView& view, Vec3 origin_mm, Vec3 step_mm) {
         view_ = &view;
         const Vec3 origin = view.cells_per_mm * (origin_mm - view.low_mm), step = view.cells_per_mm * step_mm;
-        const float origins[3] = {origin.x, origin.y, origin.z}, steps[3] = {step.x, step.y, step.z};
+        const real origins[3] = {origin.x, origin.y, origin.z}, steps[3] = {step.x, step.y, step.z};
         for (int axis = 0; axis < 3; ++axis) {
             origin_[axis] = origins[axis];
             inverse_[axis] = 1.0f / steps[axis];
             forward_[axis] = steps[axis] > 0.0f ? 1 : (steps[axis] < 0.0f ? -1 : 0);
-            cell_[axis] = int(min_of(max_of(floorf(origins[axis]), 0.0f), float(view.size[axis] - 1)));
+            cell_[axis] = int(min_of(max_of(floor(origins[axis]), 0.0f), real(view.size[axis] - 1)));
             find_exit(axis);
         }
     }
@@ -49,7 +49,7 @@ class MajorantWalk {
     }
 
     /// Distance at which the ray leaves the cell; beyond all distances in the last one.
-    OPAL_HD float exit() const { return min_of(exit_[0], min_of(exit_[1], exit_[2])); }
+    OPAL_HD real exit() const { return min_of(exit_[0], min_of(exit_[1], exit_[2])); }
 
     /// Goes on to the next cell.
     OPAL_HD void step() {
@@ -61,12 +61,12 @@ class MajorantWalk {
   private:
     OPAL_HD void find_exit(int axis) {
         const bool last = forward_[axis] > 0 ? cell_[axis] == view_->size[axis] - 1 : cell_[axis] == 0;
-        const float face = float(forward_[axis] > 0 ? cell_[axis] + 1 : cell_[axis]);
+        const real face = real(forward_[axis] > 0 ? cell_[axis] + 1 : cell_[axis]);
         exit_[axis] = forward_[axis] == 0 || last ? 3.0e38f : (face - origin_[axis]) * inverse_[axis];
     }
 
     const MajorantView* view_;
-    float origin_[3], inverse_[3], exit_[3];
+    real origin_[3], inverse_[3], exit_[3];
     int forward_[3], cell_[3];
 };
 

@@ -12,7 +12,7 @@ enum class MaterialModel { diffuse, conductor, plastic };
 struct MaterialView {
     MaterialModel model = MaterialModel::diffuse;
     UpsampledColor albedo;              ///< diffuse; plastic: of the base; conductor: its colour, for pictures of the albedo
-    float roughness = 0.0f;             ///< conductor, plastic: GGX alpha; below min_roughness: smooth
+    real roughness = 0.0f;              ///< conductor, plastic: GGX alpha; below min_roughness: smooth
     const float* index = nullptr;       ///< conductor; plastic: of the coat; 1 nm table
     const float* extinction = nullptr;  ///< conductor: imaginary part of the index; 1 nm table
     CoatAlbedoView coat_albedo;         ///< plastic with a rough coat

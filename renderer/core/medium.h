@@ -13,7 +13,7 @@ namespace opal {
 /// The opal's body as the transport reads it: coefficients, and the fields that multiply them where they vary.
 struct MediumView {
     const float* sigma_a_per_mm = nullptr;  ///< 1 nm table
-    float sigma_s_rayleigh_400nm_per_mm = 0.0f;
+    real sigma_s_rayleigh_400nm_per_mm = 0.0f;
     const float* sigma_s_mie_per_mm = nullptr;  ///< 1 nm table
     PhaseFunctionView mie_phase;
     FieldView fields[num_medium_fields];
@@ -25,15 +25,15 @@ template <int N>
 struct LaneMedium {
     Lanes<N> sigma_a, sigma_rayleigh, sigma_mie;
 
-    OPAL_HD float sigma_s(int lane) const { return sigma_rayleigh.v[lane] + sigma_mie.v[lane]; }
+    OPAL_HD real sigma_s(int lane) const { return sigma_rayleigh.v[lane] + sigma_mie.v[lane]; }
 };
 
 template <int N>
 OPAL_HD inline LaneMedium<N> lane_medium(const MediumView& view, const PathWavelengths<N>& wavelengths) {
     LaneMedium<N> medium;
     for (int i = 0; i < N; ++i) {
-        const float wavelength_nm = wavelengths.wavelength_nm[i];
-        const float relative = 400.0f / wavelength_nm;
+        const real wavelength_nm = wavelengths.wavelength_nm[i];
+        const real relative = 400.0f / wavelength_nm;
         medium.sigma_a.v[i] = table_at(view.sigma_a_per_mm, wavelength_nm);
         medium.sigma_rayleigh.v[i] = view.sigma_s_rayleigh_400nm_per_mm * square(square(relative));
         medium.sigma_mie.v[i] = table_at(view.sigma_s_mie_per_mm, wavelength_nm);
@@ -49,12 +49,12 @@ OPAL_HD inline Vec3 scatter_direction(const MediumView& view, const PathWaveleng
     const bool rayleigh = random.next() * local.sigma_s(0) < local.sigma_rayleigh.v[0];
     const Lanes<N>& chosen = rayleigh ? local.sigma_rayleigh : local.sigma_mie;
     for (int i = 1; i < weights.count; ++i) weights.ratio.v[i] *= chosen.v[i] / chosen.v[0];
-    const float u = random.next();
+    const real u = random.next();
     if (rayleigh) return deflect(direction, sample_rayleigh_cosine(u), random.next());
     const PhaseFunctionView& phase = view.mie_phase;
-    const float cosine = sample_phase_cosine(phase, wavelengths.wavelength_nm[0], u, phase_varies(phase) ? random.next() : 0.0f);
+    const real cosine = sample_phase_cosine(phase, wavelengths.wavelength_nm[0], u, phase_varies(phase) ? random.next() : 0.0f);
     if (phase_varies(phase)) {
-        const float hero = phase_density(phase, cosine, wavelengths.wavelength_nm[0]);
+        const real hero = phase_density(phase, cosine, wavelengths.wavelength_nm[0]);
         for (int i = 1; i < weights.count; ++i)
             weights.ratio.v[i] *= phase_density(phase, cosine, wavelengths.wavelength_nm[i]) / hero;
     }

@@ -40,22 +40,22 @@ class MediumFlight {
             begin_in_fields(opal.world_from_object, ray, weights);
             return;
         }
-        const float sigma_s = medium.sigma_s(0);
+        const real sigma_s = medium.sigma_s(0);
         scatter_mm_ = sigma_s > 0.0f ? free_depth(random.next()) / sigma_s : 3.0e38f;
     }
 
     /// Goes on to `distance_mm` from the flight's start, or to where the hero scatters before that. Returns the distance reached.
-    OPAL_HD float advance(float distance_mm, LaneWeights<N>& weights) {
+    OPAL_HD real advance(real distance_mm, LaneWeights<N>& weights) {
         if (varies()) return advance_in_fields(distance_mm, weights);
-        const float end_mm = min_of(distance_mm, scatter_mm_);
-        const float step_mm = end_mm - reached_mm_;
+        const real end_mm = min_of(distance_mm, scatter_mm_);
+        const real step_mm = end_mm - reached_mm_;
         pass(step_mm, weights);
         reached_mm_ = end_mm;
         return end_mm;
     }
 
     /// In closed form: begins anew after light has gone `path_mm` on other ways, not so far that it scatters.
-    OPAL_HD void begin_again(float path_mm, LaneWeights<N>& weights) {
+    OPAL_HD void begin_again(real path_mm, LaneWeights<N>& weights) {
         pass(path_mm, weights);
         scatter_mm_ -= path_mm;
     }
@@ -63,7 +63,7 @@ class MediumFlight {
     /// Whether nothing varies: then the flight need not be straight.
     OPAL_HD bool closed_form() const { return !varies(); }
     /// Of a flight in closed form: where it scatters.
-    OPAL_HD float scatter_distance_mm() const { return scatter_mm_; }
+    OPAL_HD real scatter_distance_mm() const { return scatter_mm_; }
 
     /// Whether the flight ended by scattering at the distance that `advance` returned.
     OPAL_HD bool scattered() const { return reached_mm_ == scatter_mm_; }
@@ -72,7 +72,7 @@ class MediumFlight {
     OPAL_HD const LaneMedium<N>& local() const { return varies() ? local_ : medium_; }
 
   private:
-    OPAL_HD void pass(float length_mm, LaneWeights<N>& weights) const {
+    OPAL_HD void pass(real length_mm, LaneWeights<N>& weights) const {
         OPAL_SIMD
         for (int i = 0; i < N; ++i) weights.throughput.v[i] *= exponential(-medium_.sigma_a.v[i] * length_mm);
         OPAL_SIMD
@@ -81,10 +81,10 @@ class MediumFlight {
 
     /// Throughput below which a null collision halves the chance to go on: a flight through a deep absorber would otherwise
     /// compute what is too faint to matter.
-    static constexpr float faint = 0x1p-10f;
+    static constexpr real faint = 0x1p-10f;
 
     OPAL_HD bool varies() const { return view_.majorants.cells != nullptr; }
-    OPAL_HD float draw_depth() { return free_depth(random_.next()); }
+    OPAL_HD real draw_depth() { return free_depth(random_.next()); }
 
     OPAL_HD void begin_in_fields(const RigidTransform& world_from_object, const Ray& ray, const LaneWeights<N>& weights) {
         origin_mm_ = world_from_object.local_from_world_point(ray.origin);
@@ -92,7 +92,7 @@ class MediumFlight {
         walk_.start(view_.majorants, origin_mm_, step_mm_);
         scatter_mm_ = 3.0e38f;
         depth_ = draw_depth();
-        for (float& strongest : strongest_) strongest = 0.0f;
+        for (real& strongest : strongest_) strongest = 0.0f;
         // A lane that could not have come here decides nothing, whichever lane is the hero.
         for (int i = 0; i < weights.count; ++i) {
             if (weights.ratio.v[i] == 0.0f) continue;
@@ -102,17 +102,17 @@ class MediumFlight {
         }
     }
 
-    OPAL_HD float advance_in_fields(float distance_mm, LaneWeights<N>& weights) {
-        float minima[num_medium_fields] = {};  // integrated over the way
+    OPAL_HD real advance_in_fields(real distance_mm, LaneWeights<N>& weights) {
+        real minima[num_medium_fields] = {};  // integrated over the way
         while (!scattered() && !extinct_ && reached_mm_ < distance_mm) {
             const MajorantCell& cell = walk_.cell();
-            const float exit_mm = walk_.exit();
-            const float end_mm = max_of(reached_mm_, min_of(distance_mm, exit_mm));
-            const float base_per_mm = cell.min[1] * medium_.sigma_rayleigh.v[0] + cell.min[2] * medium_.sigma_mie.v[0];
-            float rest_per_mm = 0.0f;
+            const real exit_mm = walk_.exit();
+            const real end_mm = max_of(reached_mm_, min_of(distance_mm, exit_mm));
+            const real base_per_mm = cell.min[1] * medium_.sigma_rayleigh.v[0] + cell.min[2] * medium_.sigma_mie.v[0];
+            real rest_per_mm = 0.0f;
             for (int f = 0; f < num_medium_fields; ++f) rest_per_mm += (cell.max[f] - cell.min[f]) * strongest_[f];
-            const float total_per_mm = base_per_mm + rest_per_mm;
-            float length_mm = end_mm - reached_mm_;
+            const real total_per_mm = base_per_mm + rest_per_mm;
+            real length_mm = end_mm - reached_mm_;
             const bool collides = total_per_mm * length_mm > depth_;
             if (collides) length_mm = depth_ / total_per_mm;
             for (int f = 0; f < num_medium_fields; ++f) minima[f] += cell.min[f] * length_mm;
@@ -131,32 +131,32 @@ class MediumFlight {
         return reached_mm_;
     }
 
-    OPAL_HD void pass_minima(const float* minima, LaneWeights<N>& weights) const {
+    OPAL_HD void pass_minima(const real* minima, LaneWeights<N>& weights) const {
         if (minima[0] > 0.0f)
-            for (int i = 0; i < weights.count; ++i) weights.throughput.v[i] *= expf(-medium_.sigma_a.v[i] * minima[0]);
+            for (int i = 0; i < weights.count; ++i) weights.throughput.v[i] *= exp(-medium_.sigma_a.v[i] * minima[0]);
         if (minima[1] > 0.0f || minima[2] > 0.0f)
             for (int i = 1; i < weights.count; ++i)
-                weights.ratio.v[i] *= expf((medium_.sigma_rayleigh.v[0] - medium_.sigma_rayleigh.v[i]) * minima[1] +
-                                           (medium_.sigma_mie.v[0] - medium_.sigma_mie.v[i]) * minima[2]);
+                weights.ratio.v[i] *= exp((medium_.sigma_rayleigh.v[0] - medium_.sigma_rayleigh.v[i]) * minima[1] +
+                                          (medium_.sigma_mie.v[0] - medium_.sigma_mie.v[i]) * minima[2]);
     }
 
-    OPAL_HD void collide(const MajorantCell& cell, float base_per_mm, float rest_per_mm, LaneWeights<N>& weights) {
+    OPAL_HD void collide(const MajorantCell& cell, real base_per_mm, real rest_per_mm, LaneWeights<N>& weights) {
         if (base_per_mm > 0.0f && random_.next() * (base_per_mm + rest_per_mm) < base_per_mm)
             return scatter(cell.min[1], cell.min[2]);
         const Vec3 place_mm = origin_mm_ + reached_mm_ * step_mm_;
-        float rest[num_medium_fields];
+        real rest[num_medium_fields];
         for (int f = 0; f < num_medium_fields; ++f) {
             // One density may stand for several coefficients: then one look is enough.
             const bool same = f > 0 && view_.fields[f].grid == view_.fields[0].grid;
             rest[f] = same ? rest[0] : cell.max[f] > cell.min[f] ? rest_of(f, cell, place_mm) : 0.0f;
         }
-        const float hero_per_mm = rest[1] * medium_.sigma_rayleigh.v[0] + rest[2] * medium_.sigma_mie.v[0];
+        const real hero_per_mm = rest[1] * medium_.sigma_rayleigh.v[0] + rest[2] * medium_.sigma_mie.v[0];
         if (random_.next() * rest_per_mm < hero_per_mm) return scatter(rest[1], rest[2]);
-        float largest = 0.0f;
+        real largest = 0.0f;
         for (int i = 0; i < N && i < weights.count; ++i) {
-            const float scattered_per_mm = rest[1] * medium_.sigma_rayleigh.v[i] + rest[2] * medium_.sigma_mie.v[i];
-            const float null_per_mm = max_of(0.0f, rest_per_mm - scattered_per_mm);
-            const float kept_per_mm = max_of(0.0f, null_per_mm - rest[0] * medium_.sigma_a.v[i]);
+            const real scattered_per_mm = rest[1] * medium_.sigma_rayleigh.v[i] + rest[2] * medium_.sigma_mie.v[i];
+            const real null_per_mm = max_of(0.0f, rest_per_mm - scattered_per_mm);
+            const real kept_per_mm = max_of(0.0f, null_per_mm - rest[0] * medium_.sigma_a.v[i]);
             weights.throughput.v[i] *= null_per_mm > 0.0f ? kept_per_mm / null_per_mm : 0.0f;
             if (i > 0) weights.ratio.v[i] *= null_per_mm / (rest_per_mm - hero_per_mm);
             largest = max_of(largest, weights.throughput.v[i]);
@@ -165,13 +165,13 @@ class MediumFlight {
     }
 
     /// By the largest throughput of any lane: the same for every choice of the hero, so the lanes' ratios stay.
-    OPAL_HD void thin_out(float largest, LaneWeights<N>& weights) {
+    OPAL_HD void thin_out(real largest, LaneWeights<N>& weights) {
         const bool goes_on = largest > 0.0f && random_.next() < 0.5f;
         for (int i = 0; i < weights.count; ++i) weights.throughput.v[i] *= goes_on ? 2.0f : 0.0f;
         extinct_ = !goes_on;
     }
 
-    OPAL_HD void scatter(float rayleigh, float mie) {
+    OPAL_HD void scatter(real rayleigh, real mie) {
         for (int i = 0; i < N; ++i) {
             local_.sigma_rayleigh.v[i] = rayleigh * medium_.sigma_rayleigh.v[i];
             local_.sigma_mie.v[i] = mie * medium_.sigma_mie.v[i];
@@ -181,10 +181,10 @@ class MediumFlight {
 
     /// What a field has above its minimum in the cell. Rounding may carry it past the bounds by a few units in the last place;
     /// more is a violation.
-    OPAL_HD float rest_of(int field, const MajorantCell& cell, Vec3 place_mm) {
-        const float low = cell.min[field], high = cell.max[field];
-        const float value = field_value(view_.fields[field], place_mm);
-        const float rounding = 1.0e-5f * high;
+    OPAL_HD real rest_of(int field, const MajorantCell& cell, Vec3 place_mm) {
+        const real low = cell.min[field], high = cell.max[field];
+        const real value = field_value(view_.fields[field], place_mm);
+        const real rounding = 1.0e-5f * high;
         if (!(value >= low - rounding && value <= high + rounding)) ++majorant_violations_;
         return min_of(max_of(value, low), high) - low;
     }
@@ -193,13 +193,13 @@ class MediumFlight {
     const LaneMedium<N>& medium_;
     PathRandom& random_;
     uint64_t& majorant_violations_;
-    float scatter_mm_;  ///< where it scatters; in fields known only once it has
-    float reached_mm_ = 0.0f;
+    real scatter_mm_;  ///< where it scatters; in fields known only once it has
+    real reached_mm_ = 0.0f;
     // In fields alone.
-    float depth_;  ///< optical depth left to the next tentative collision
+    real depth_;  ///< optical depth left to the next tentative collision
     bool extinct_ = false;
-    float strongest_[num_medium_fields];  ///< of the lanes, per unit of each field
-    Vec3 origin_mm_, step_mm_;            ///< object space; the step is per world mm
+    real strongest_[num_medium_fields];  ///< of the lanes, per unit of each field
+    Vec3 origin_mm_, step_mm_;           ///< object space; the step is per world mm
     MajorantWalk walk_;
     LaneMedium<N> local_;
 };

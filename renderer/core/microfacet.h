@@ -7,54 +7,54 @@ namespace opal {
 
 /// Below this roughness a surface is smooth: a lobe narrower than a thousandth of a radian looks the same, and a float no longer
 /// resolves its density.
-inline constexpr float min_roughness = 1.0e-3f;
+inline constexpr real min_roughness = 1.0e-3f;
 
 /// Rough surfaces as many small mirrors whose normals have the GGX distribution: Walter, Marschner, Li & Torrance 2007,
 /// "Microfacet models for refraction through rough surfaces", section 5.2. All vectors are unit, in a frame whose z is the mean
 /// normal; `v` points away from the mirrors and may point down, between them.
 struct Ggx {
-    float alpha;  ///< width of the distribution: slopes of the small mirrors, from min_roughness to 1
+    real alpha;  ///< width of the distribution: slopes of the small mirrors, from min_roughness to 1
 
     /// Area of mirrors per area of the surface and solid angle of their normals: 1/sr.
-    OPAL_HD float density(Vec3 normal) const {
+    OPAL_HD real density(Vec3 normal) const {
         if (normal.z <= 0.0f) return 0.0f;
-        const float slope2 = (square(normal.x) + square(normal.y)) / square(alpha);
+        const real slope2 = (square(normal.x) + square(normal.y)) / square(alpha);
         return 1.0f / (pi_f * square(alpha) * square(slope2 + square(normal.z)));
     }
 
     /// Smith's Lambda (Heitz 2014, "Understanding the masking-shadowing function in microfacet-based BRDFs", equation 72);
     /// carried on below the horizon, where it is at most -1 (Heitz, Hanika, d'Eon & Dachsbacher 2016, section 3).
-    OPAL_HD float lambda(Vec3 v) const {
-        const float x = square(alpha) * (square(v.x) + square(v.y)) / max_of(square(v.z), 1.0e-30f);
-        const float above = 0.5f * x / (1.0f + sqrtf(1.0f + x));
+    OPAL_HD real lambda(Vec3 v) const {
+        const real x = square(alpha) * (square(v.x) + square(v.y)) / max_of(square(v.z), 1.0e-30f);
+        const real above = 0.5f * x / (1.0f + sqrt(1.0f + x));
         return v.z >= 0.0f ? above : -1.0f - above;
     }
 
     /// Part of the mirrors that is seen from above along `a` and `b`, over the part seen along `a` (Heitz 2014, equation 99).
-    OPAL_HD float shadowing(Vec3 a, Vec3 b) const {
-        const float lambda_a = lambda(a);
+    OPAL_HD real shadowing(Vec3 a, Vec3 b) const {
+        const real lambda_a = lambda(a);
         return (1.0f + lambda_a) / (1.0f + lambda_a + lambda(b));
     }
 
     /// The same for `b` below the surface: what is high on one side lies deep on the other (Heitz et al. 2016, section 6).
-    OPAL_HD float shadowing_through(Vec3 a, Vec3 b) const {
+    OPAL_HD real shadowing_through(Vec3 a, Vec3 b) const {
         const double lambda_a = double(lambda(a)), lambda_b = double(lambda(-b));
-        return float((1.0 + lambda_a) *
-                     exp(log_gamma(1.0 + lambda_a) + log_gamma(1.0 + lambda_b) - log_gamma(2.0 + lambda_a + lambda_b)));
+        return real((1.0 + lambda_a) *
+                    exp(log_gamma(1.0 + lambda_a) + log_gamma(1.0 + lambda_b) - log_gamma(2.0 + lambda_a + lambda_b)));
     }
 
     /// Density of the normals that are seen from `v`: 1/sr.
-    OPAL_HD float visible_density(Vec3 v, Vec3 normal) const {
+    OPAL_HD real visible_density(Vec3 v, Vec3 normal) const {
         return max_of(0.0f, dot(v, normal)) * density(normal) / (v.z * (1.0f + lambda(v)));
     }
 
     /// Draws a normal that is seen from `v` (Heitz 2018, "Sampling the GGX distribution of visible normals", by the equivalent
     /// spherical caps of Dupuy & Benyoub 2023).
-    OPAL_HD Vec3 sample_visible(Vec3 v, float u1, float u2) const {
+    OPAL_HD Vec3 sample_visible(Vec3 v, real u1, real u2) const {
         const Vec3 stretched = normalize({alpha * v.x, alpha * v.y, v.z});
-        const float z = (1.0f - u1) * (1.0f + stretched.z) - stretched.z;
-        const float radius = sqrtf(max_of(0.0f, 1.0f - z * z)), angle_rad = 2.0f * pi_f * u2;
-        const Vec3 half = Vec3{radius * cosf(angle_rad), radius * sinf(angle_rad), z} + stretched;
+        const real z = (1.0f - u1) * (1.0f + stretched.z) - stretched.z;
+        const real radius = sqrt(max_of(0.0f, 1.0f - z * z)), angle_rad = 2.0f * pi_f * u2;
+        const Vec3 half = Vec3{radius * cos(angle_rad), radius * sin(angle_rad), z} + stretched;
         return normalize({alpha * half.x, alpha * half.y, max_of(half.z, 1.0e-7f)});
     }
 
@@ -72,13 +72,13 @@ struct Ggx {
 /// until it leaves (Heitz, Hanika, d'Eon & Dachsbacher 2016, "Multiple-scattering microfacet BSDFs with the Smith model", section
 /// 5), so that rough surfaces lose no light.
 struct MicrofacetDepth {
-    float lower = 1.0f;
+    real lower = 1.0f;
 
     /// Goes on along `direction` to the next mirror. Returns whether there is none: the path leaves.
-    OPAL_HD bool leaves(const Ggx& ggx, Vec3 direction, float u) {
-        const float lambda = ggx.lambda(direction);
-        if (direction.z > 0.0f && !(u < 1.0f - powf(lower, lambda))) return true;
-        lower = min_of(1.0f, max_of(shallowest, lower * powf(1.0f - u, -1.0f / lambda)));
+    OPAL_HD bool leaves(const Ggx& ggx, Vec3 direction, real u) {
+        const real lambda = ggx.lambda(direction);
+        if (direction.z > 0.0f && !(u < 1.0f - pow(lower, lambda))) return true;
+        lower = min_of(1.0f, max_of(shallowest, lower * pow(1.0f - u, -1.0f / lambda)));
         return false;
     }
 
@@ -86,7 +86,7 @@ struct MicrofacetDepth {
     OPAL_HD void turn_over() { lower = max_of(shallowest, 1.0f - lower); }
 
   private:
-    static constexpr float shallowest = 1.0e-12f;  ///< nobody gets out from 0
+    static constexpr real shallowest = 1.0e-12f;  ///< nobody gets out from 0
 };
 
 }  // namespace opal

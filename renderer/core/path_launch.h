@@ -29,7 +29,7 @@ struct LaunchBlock {
 /// One path as it is handed to the film.
 template <int N>
 struct PathRecord {
-    float wavelength_nm[N], pdf_per_nm[N], radiance[N], truncated[N];
+    real wavelength_nm[N], pdf_per_nm[N], radiance[N], truncated[N];
 
     OPAL_HD FilmSample sample(int count) const { return {wavelength_nm, pdf_per_nm, radiance, truncated, count}; }
 };

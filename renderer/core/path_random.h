@@ -23,9 +23,9 @@ class PixelSequence {
     OPAL_HD PixelSequence(uint64_t seed, uint32_t pixel, uint32_t sample)
         : scramble_(random_block(seed, RandomStream::pixel_scramble, pixel, 0)), sample_(sample) {}
 
-    OPAL_HD float wavelength() const { return uniform_float(scramble_.value[0] + sample_ * 0x9E3779B9u); }
-    OPAL_HD float position_x() const { return uniform_float(scramble_.value[1] + sample_ * 0xC13FA9A9u); }
-    OPAL_HD float position_y() const { return uniform_float(scramble_.value[2] + sample_ * 0x91E10DA5u); }
+    OPAL_HD real wavelength() const { return uniform_float(scramble_.value[0] + sample_ * 0x9E3779B9u); }
+    OPAL_HD real position_x() const { return uniform_float(scramble_.value[1] + sample_ * 0xC13FA9A9u); }
+    OPAL_HD real position_y() const { return uniform_float(scramble_.value[2] + sample_ * 0x91E10DA5u); }
 
   private:
     RandomBlock scramble_;
@@ -34,7 +34,7 @@ class PixelSequence {
 
 /// What decides a sample before its path begins.
 struct PixelNumbers {
-    float wavelength, x, y;
+    real wavelength, x, y;
 };
 
 /// The random numbers of one path.
@@ -49,13 +49,13 @@ class PathRandom {
             const PixelSequence sequence(seed_, uint32_t(index_ >> 32), uint32_t(index_));
             return {sequence.wavelength(), sequence.position_x(), sequence.position_y()};
         }
-        const float wavelength = next(), x = next(), y = next();
+        const real wavelength = next(), x = next(), y = next();
         if (sampler_ == PathSampler::sobol) points_used_ = 4;
         return {wavelength, x, y};
     }
 
     /// Uniform in [0, 1).
-    OPAL_HD float next() {
+    OPAL_HD real next() {
         if (sampler_ == PathSampler::sobol && (points_used_ < 4 || group_ < sobol_groups)) return uniform_float(next_sobol());
         return uniform_float(next_bits());
     }

@@ -21,7 +21,7 @@ struct PathResult {
 /// The illuminant at a path's wavelengths, looked up once.
 template <int N>
 struct LaneSpectra {
-    float white[N];
+    real white[N];
 
     OPAL_HD LaneSpectra(const SpectrumTables& tables, const PathWavelengths<N>& wavelengths) {
         for (int i = 0; i < wavelengths.count; ++i) white[i] = table_at(tables.white, wavelengths.wavelength_nm[i]);
@@ -131,7 +131,7 @@ class PathTracer {
     /// -1 in the open.
     OPAL_HD int object_of(int body) const { return body < 0 ? -1 : scene_.bodies[body].object; }
 
-    OPAL_HD void lane_indices(int body, float* index) {
+    OPAL_HD void lane_indices(int body, real* index) {
         for (int i = 0; i < N; ++i)
             index[i] = body < 0 ? 1.0f : table_at(scene_.bodies[body].surface_index, wavelengths_.wavelength_nm[i]);
     }
@@ -139,7 +139,7 @@ class PathTracer {
     OPAL_HD bool disperses(int body) const { return body >= 0 && scene_.bodies[body].surface_disperses; }
 
     OPAL_HD Ray meet_body(const Ray& ray, const Surface& surface, NestedBodies beyond, int bounce) {
-        float index_before[N], index_beyond[N];
+        real index_before[N], index_beyond[N];
         lane_indices(bodies_.current(), index_before);
         lane_indices(beyond.current(), index_beyond);
         const DielectricSplit<N> split = split_dielectric<N>(ray.direction, surface, index_before, index_beyond);
@@ -240,8 +240,8 @@ class PathTracer {
 
     /// Weight of a direction drawn with density `pdf` that could have been drawn with `other_pdf` as well: the power heuristic
     /// (Veach 1997).
-    OPAL_HD static float power_heuristic(float pdf, float other_pdf) {
-        const float ratio = other_pdf / pdf;
+    OPAL_HD static real power_heuristic(real pdf, real other_pdf) {
+        const real ratio = other_pdf / pdf;
         return 1.0f / (1.0f + ratio * ratio);
     }
 
@@ -250,15 +250,15 @@ class PathTracer {
     OPAL_HD void connect_lights(const SurfaceInteraction<N>& interaction, Vec3 normal) {
         if (scene_.light_sampling == LightSampling::scattering) return;
         const Vec3 position = interaction.surface.position;
-        const float u = scene_.lights.count > 0 ? random_.next() : 0.0f;
-        const float u1 = random_.next(), u2 = random_.next();
+        const real u = scene_.lights.count > 0 ? random_.next() : 0.0f;
+        const real u1 = random_.next(), u2 = random_.next();
         const LightSample sample = sample_light(scene_.lights, scene_.environment, position, u, u1, u2);
         if (!(sample.pdf > 0.0f) || dot(sample.direction, normal) <= 0.0f) return;
         const Ray shadow{offset_origin(position, normal, sample.direction), sample.direction};
-        const float reach_mm = sample.distance_mm * (1.0f - 1.0e-5f);
+        const real reach_mm = sample.distance_mm * (1.0f - 1.0e-5f);
         if (lights_occlude(scene_.lights, shadow, reach_mm, sample.light) || intersector_.occluded(shadow, reach_mm)) return;
         const BsdfValue<N> value = evaluate(interaction, sample.direction);
-        const float weight = scene_.light_sampling == LightSampling::both ? power_heuristic(sample.pdf, value.pdf) : 1.0f;
+        const real weight = scene_.light_sampling == LightSampling::both ? power_heuristic(sample.pdf, value.pdf) : 1.0f;
         Lanes<N> factor;
         for (int i = 0; i < weights_.count; ++i) factor.v[i] = weight * value.f_cosine.v[i] / sample.pdf;
         if (sample.light == environment_light)
@@ -306,12 +306,12 @@ class PathTracer {
     OPAL_HD bool survives_roulette(int bounce) {
         if (bounce < 4 || !scene_.roulette) return true;
         const Lanes<N> contribution = weights_.contribution();
-        float largest = 0.0f;
+        real largest = 0.0f;
         for (int i = 0; i < weights_.count; ++i) largest = max_of(largest, contribution.v[i]);
         // A path that still carries more is worth its time: ending it brings more noise than it saves (opal-bench media-checks).
-        constexpr float worth_following = 0.5f;
+        constexpr real worth_following = 0.5f;
         if (!(largest < worth_following)) return true;
-        const float kept = largest / worth_following;
+        const real kept = largest / worth_following;
         if (random_.next() >= kept) return false;
         for (int i = 0; i < weights_.count; ++i) weights_.throughput.v[i] /= kept;
         return true;
@@ -334,7 +334,7 @@ class PathTracer {
     bool reflection_pending_ = false;
     NestedBodies bodies_;     ///< where the path is
     bool connected_ = false;  ///< lights were sampled at the last point
-    float pdf_ = 0.0f;        ///< with which the direction from there was drawn
+    real pdf_ = 0.0f;         ///< with which the direction from there was drawn
     Vec3 drawn_from_;         ///< that point
 };
 
@@ -344,13 +344,13 @@ OPAL_HD PathResult<N> trace_sample(const SceneView& scene, const Intersector& in
                                    PathWavelengths<N>& wavelengths, PathCounters& counters) {
     PathRandom random(scene.seed, pixel, sample, scene.sampler);
     const PixelNumbers numbers = random.pixel_numbers();
-    const float x = 0.5f + sample_pixel_filter(scene.filter, numbers.x);
-    const float y = 0.5f + sample_pixel_filter(scene.filter, numbers.y);
+    const real x = 0.5f + sample_pixel_filter(scene.filter, numbers.x);
+    const real y = 0.5f + sample_pixel_filter(scene.filter, numbers.y);
     wavelengths = sample_wavelengths<N>(scene.spectra, numbers.wavelength, scene.wavelengths);
     const bool lens = scene.camera.aperture_radius_mm > 0.0f;
-    const float lens_u = lens ? random.next() : 0.0f, lens_v = lens ? random.next() : 0.0f;
-    const Ray ray = camera_ray(scene.camera, (float(pixel % uint32_t(scene.width)) + x) / float(scene.width),
-                               (float(pixel / uint32_t(scene.width)) + y) / float(scene.height), lens_u, lens_v);
+    const real lens_u = lens ? random.next() : 0.0f, lens_v = lens ? random.next() : 0.0f;
+    const Ray ray = camera_ray(scene.camera, (real(pixel % uint32_t(scene.width)) + x) / real(scene.width),
+                               (real(pixel / uint32_t(scene.width)) + y) / real(scene.height), lens_u, lens_v);
     PathTracer<N, Intersector> tracer(scene, intersector, wavelengths, random, counters);
     PathResult<N> result = tracer.trace(ray);
     for (int i = 0; i < wavelengths.count; ++i)

@@ -11,8 +11,8 @@ enum class PhaseKind { henyey_greenstein, draine, schlick, table };
 /// One phase function of any kind.
 struct PhaseFunctionView {
     PhaseKind kind = PhaseKind::henyey_greenstein;
-    float g = 0.0f;      ///< Henyey-Greenstein's and Draine's g, Schlick's k; mean cosines: phase.h
-    float alpha = 1.0f;  ///< Draine's second parameter
+    real g = 0.0f;      ///< Henyey-Greenstein's and Draine's g, Schlick's k; mean cosines: phase.h
+    real alpha = 1.0f;  ///< Draine's second parameter
     PhaseTableView table;
 };
 
@@ -22,7 +22,7 @@ OPAL_HD inline bool phase_varies(const PhaseFunctionView& phase) {
 }
 
 /// Density per steradian of turning by an angle of the given cosine.
-OPAL_HD inline float phase_density(const PhaseFunctionView& phase, float cosine, float wavelength_nm) {
+OPAL_HD inline real phase_density(const PhaseFunctionView& phase, real cosine, real wavelength_nm) {
     switch (phase.kind) {
         case PhaseKind::draine:
             return draine_phase(cosine, phase.g, phase.alpha);
@@ -36,7 +36,7 @@ OPAL_HD inline float phase_density(const PhaseFunctionView& phase, float cosine,
 }
 
 /// Draws the cosine with that density from two uniform numbers; kinds in closed form use the first alone.
-OPAL_HD inline float sample_phase_cosine(const PhaseFunctionView& phase, float wavelength_nm, float u1, float u2) {
+OPAL_HD inline real sample_phase_cosine(const PhaseFunctionView& phase, real wavelength_nm, real u1, real u2) {
     switch (phase.kind) {
         case PhaseKind::draine:
             return sample_draine_cosine(u1, phase.g, phase.alpha);

@@ -11,7 +11,7 @@ namespace opal {
 /// A ball around a body.
 struct BodyBounds {
     Vec3 center_mm;
-    float radius_mm = 0.0f;
+    real radius_mm = 0.0f;
 };
 
 /// Flights that a photon is followed for: later ones say little that earlier ones have not said.
@@ -21,22 +21,21 @@ inline constexpr int photon_flights = 24;
 /// with.
 struct EmittedPhoton {
     Ray ray;
-    float power = 0.0f;  ///< 0: nothing comes this way
+    real power = 0.0f;  ///< 0: nothing comes this way
 };
 
 template <class Intersector>
 OPAL_HD inline EmittedPhoton emit_photon(const SceneView& scene, const Intersector& intersector, const BodyBounds& bounds,
                                          const PathWavelengths<1>& wavelengths, PathRandom& random) {
     EmittedPhoton photon;
-    const float u = random.next(), u1 = random.next(), u2 = random.next(), u3 = random.next(), u4 = random.next();
+    const real u = random.next(), u1 = random.next(), u2 = random.next(), u3 = random.next(), u4 = random.next();
     const LightSample sample = sample_light(scene.lights, scene.environment, bounds.center_mm, u, u1, u2);
     if (!(sample.pdf > 0.0f)) return photon;
-    const float wavelength_nm = wavelengths.wavelength_nm[0];
-    const float radius_mm = bounds.radius_mm * sqrtf(u3), angle_rad = 2.0f * pi_f * u4;
-    const Vec3 across =
-        Frame(sample.direction).world_from_local({radius_mm * cosf(angle_rad), radius_mm * sinf(angle_rad), 0.0f});
+    const real wavelength_nm = wavelengths.wavelength_nm[0];
+    const real radius_mm = bounds.radius_mm * sqrt(u3), angle_rad = 2.0f * pi_f * u4;
+    const Vec3 across = Frame(sample.direction).world_from_local({radius_mm * cos(angle_rad), radius_mm * sin(angle_rad), 0.0f});
     const Vec3 place = bounds.center_mm + across;
-    float radiance;
+    real radiance;
     if (sample.distance_mm < 1.0e30f) {
         const Vec3 source = bounds.center_mm + sample.distance_mm * sample.direction;
         photon.ray = {source, normalize(place - source)};
@@ -70,7 +69,7 @@ OPAL_HD inline void trace_photon(const SceneView& scene, const Intersector& inte
     const OpalView& opal = scene.bodies[body];
     const LaneMedium<1> medium = lane_medium(opal.medium, wavelengths);
     const LaneOptics<1> optics = lane_optics(opal, wavelengths);
-    const float outside_index = 1.0f;
+    const real outside_index = 1.0f;
     LaneWeights<1> weights;
     GrainVisit<1> visit;
     PathCounters counters;

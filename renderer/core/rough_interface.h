@@ -15,8 +15,8 @@ namespace opal {
 /// and the ratio of the densities follows from those tilts.
 template <int N>
 struct RoughInterface {
-    float roughness;  ///< GGX alpha, from min_roughness
-    float eta[N];     ///< index beyond over index before
+    real roughness;  ///< GGX alpha, from min_roughness
+    real eta[N];     ///< index beyond over index before
     int count = N;
 
     /// What one of the small mirrors reflects or lets through; light that goes from mirror to mirror has no closed form.
@@ -26,7 +26,7 @@ struct RoughInterface {
         if (!(out.z > 0.0f) || in.z == 0.0f || matched(0)) return value;
         const Ggx ggx{roughness};
         const bool passes = in.z < 0.0f;
-        const float seen = passes ? ggx.shadowing_through(out, in) : ggx.shadowing(out, in);
+        const real seen = passes ? ggx.shadowing_through(out, in) : ggx.shadowing(out, in);
         for (int i = 0; i < count; ++i) value.f_cosine.v[i] = seen * turn_density(ggx, out, in, passes, eta[i]);
         value.pdf = value.f_cosine.v[0];
         return value;
@@ -44,11 +44,11 @@ struct RoughInterface {
         Vec3 direction = -out;  // in the frame of the side where the path is
         bool first = true;
         for (depth.leaves(ggx, direction, random.next());; first = false) {
-            const float relative = sample.transmitted ? 1.0f / eta[0] : eta[0];
-            const float u1 = random.next();
+            const real relative = sample.transmitted ? 1.0f / eta[0] : eta[0];
+            const real u1 = random.next();
             const Vec3 half = ggx.sample_visible(-direction, u1, random.next());
-            const float cosine = min_of(1.0f, max_of(0.0f, -dot(direction, half)));
-            float cos_refracted;
+            const real cosine = min_of(1.0f, max_of(0.0f, -dot(direction, half)));
+            real cos_refracted;
             const bool passes = !(random.next() < fresnel_dielectric(cosine, relative, cos_refracted));
             const Vec3 turned =
                 passes ? refract(direction, half, relative, cosine, cos_refracted) : normalize(mirror(direction, half));
@@ -68,7 +68,7 @@ struct RoughInterface {
 
   private:
     /// Indices so near each other that light goes straight on: it would be turned by less than its lobe is resolved.
-    OPAL_HD bool matched(int lane) const { return fabsf(eta[lane] - 1.0f) < 1.0e-4f; }
+    OPAL_HD bool matched(int lane) const { return fabs(eta[lane] - 1.0f) < 1.0e-4f; }
 
     OPAL_HD BsdfSample<N> passed(Vec3 out) const {
         BsdfSample<N> sample;
@@ -84,35 +84,35 @@ struct RoughInterface {
         for (int i = 1; i < count; ++i) same = same && eta[i] == eta[0];
         if (same) return;
         const bool beyond = sample.transmitted;
-        const float hero = turn_density(ggx, back, turned, passes, beyond ? 1.0f / eta[0] : eta[0]);
+        const real hero = turn_density(ggx, back, turned, passes, beyond ? 1.0f / eta[0] : eta[0]);
         for (int i = 1; i < count; ++i)
             sample.ratio.v[i] *=
                 hero > 0.0f ? turn_density(ggx, back, turned, passes, beyond ? 1.0f / eta[i] : eta[i]) / hero : 0.0f;
     }
 
     /// Density (1/sr) of the directions into which mirrors seen from `out` turn the light.
-    OPAL_HD static float turn_density(const Ggx& ggx, Vec3 out, Vec3 in, bool passes, float relative) {
+    OPAL_HD static real turn_density(const Ggx& ggx, Vec3 out, Vec3 in, bool passes, real relative) {
         return passes ? refracted_density(ggx, out, in, relative) : reflected_density(ggx, out, in, relative);
     }
 
-    OPAL_HD static float reflected_density(const Ggx& ggx, Vec3 out, Vec3 in, float relative) {
+    OPAL_HD static real reflected_density(const Ggx& ggx, Vec3 out, Vec3 in, real relative) {
         const Vec3 half = normalize(out + in);
-        const float cosine = dot(out, half);
+        const real cosine = dot(out, half);
         if (!(cosine > 0.0f)) return 0.0f;
-        float unused;
+        real unused;
         return fresnel_dielectric(cosine, relative, unused) * ggx.visible_density(out, half) / (4.0f * cosine);
     }
 
     /// Walter et al. 2007, equation 17, for the solid angle of the refracted directions.
-    OPAL_HD static float refracted_density(const Ggx& ggx, Vec3 out, Vec3 in, float relative) {
+    OPAL_HD static real refracted_density(const Ggx& ggx, Vec3 out, Vec3 in, real relative) {
         const Vec3 sum = out + relative * in;
-        const float sum_length = length(sum);
+        const real sum_length = length(sum);
         if (!(sum_length > 0.0f)) return 0.0f;
         const Vec3 half = (sum.z > 0.0f ? 1.0f : -1.0f) / sum_length * sum;
-        const float cos_out = dot(out, half), cos_in = dot(in, half);
+        const real cos_out = dot(out, half), cos_in = dot(in, half);
         if (!(cos_out > 0.0f) || !(cos_in < 0.0f)) return 0.0f;
-        float unused;
-        const float passing = 1.0f - fresnel_dielectric(cos_out, relative, unused);
+        real unused;
+        const real passing = 1.0f - fresnel_dielectric(cos_out, relative, unused);
         return passing * ggx.visible_density(out, half) * square(relative / sum_length) * -cos_in;
     }
 };

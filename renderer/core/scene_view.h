@@ -43,21 +43,21 @@ struct OpalView {
     const Quaternion* orientations = nullptr;  ///< lattice -> object; element g - 1 is grain g's
     const float* grain_size_mm = nullptr;      ///< object mm; element g - 1: diameter of a ball as large as grain g
     int num_grains = 0;
-    const float* n_eff = nullptr;              ///< 1 nm table: effective index where light diffracts
-    const float* contrast = nullptr;           ///< 1 nm table: |n_sphere^2 - n_medium^2|
-    const float* relative_index = nullptr;     ///< 1 nm table: n_sphere / n_medium
-    const float* surface_index = nullptr;      ///< 1 nm table: effective index where light refracts
-    bool surface_disperses = false;            ///< surface_index varies
-    float roughness = 0.0f;                    ///< of the surface, GGX alpha; below min_roughness: smooth
+    const float* n_eff = nullptr;           ///< 1 nm table: effective index where light diffracts
+    const float* contrast = nullptr;        ///< 1 nm table: |n_sphere^2 - n_medium^2|
+    const float* relative_index = nullptr;  ///< 1 nm table: n_sphere / n_medium
+    const float* surface_index = nullptr;   ///< 1 nm table: effective index where light refracts
+    bool surface_disperses = false;         ///< surface_index varies
+    real roughness = 0.0f;                  ///< of the surface, GGX alpha; below min_roughness: smooth
     PlanePair pairs[max_tested_pairs];
     PlaneFamilies families;  ///< of the pairs
     int num_pairs = 0;
-    float coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
-    float fault = 0.0f;             ///< probability of a stacking fault per layer
-    float layer_nm = 204.0f;        ///< distance of stacked layers
-    float mosaic_kappa = 0.0f;      ///< 0: no mosaic spread
-    float max_odds = 400.0f;        ///< where the odds of reflection over a grain's size saturate
-    float ewald_tolerance = 0.01f;
+    real coherence_nm = 25000.0f;  ///< mean thickness of a coherent block
+    real fault = 0.0f;             ///< probability of a stacking fault per layer
+    real layer_nm = 204.0f;        ///< distance of stacked layers
+    real mosaic_kappa = 0.0f;      ///< 0: no mosaic spread
+    real max_odds = 400.0f;        ///< where the odds of reflection over a grain's size saturate
+    real ewald_tolerance = 0.01f;
     MediumView medium;
     LightGuideView guide;  ///< where scattered light comes from; may be none
 };
@@ -98,7 +98,7 @@ struct SceneView {
     int width = 0, height = 0;
     int max_bounces = 64;
     bool roulette = true;  ///< paths that carry little end at random
-    int wavelengths = 4;  ///< 1 + companions
+    int wavelengths = 4;   ///< 1 + companions
     uint64_t seed = 1;
     PathSampler sampler = PathSampler::stratified;
     PixelFilter filter;
@@ -106,10 +106,10 @@ struct SceneView {
 
 /// What a ray met.
 struct RayHit {
-    float distance_mm = 0.0f;
+    real distance_mm = 0.0f;
     uint32_t mesh = 0;
-    uint32_t triangle = 0;     ///< of an exact surface: the piece
-    float u = 0.0f, v = 0.0f;  ///< barycentric; on an exact surface the patch's parameters
+    uint32_t triangle = 0;    ///< of an exact surface: the piece
+    real u = 0.0f, v = 0.0f;  ///< barycentric; on an exact surface the patch's parameters
 };
 
 /// Geometry at a hit: normals are outward and unit length.
@@ -125,8 +125,8 @@ OPAL_HD inline Surface patch_surface_at(const MeshView& mesh, const RayHit& hit)
     const BezierPatch& patch = mesh.patches.patches[mesh.patches.pieces[hit.triangle].patch];
     const BezierPoint point = evaluate_bezier(patch, double(hit.u), double(hit.v));
     Surface surface;
-    surface.position = {float(point.position_mm[0]), float(point.position_mm[1]), float(point.position_mm[2])};
-    surface.geometric_normal = {float(point.normal[0]), float(point.normal[1]), float(point.normal[2])};
+    surface.position = {real(point.position_mm[0]), real(point.position_mm[1]), real(point.position_mm[2])};
+    surface.geometric_normal = {real(point.normal[0]), real(point.normal[1]), real(point.normal[2])};
     surface.shading_normal = surface.geometric_normal;
     surface.material = mesh.material;
     surface.body = mesh.body;
@@ -138,7 +138,7 @@ OPAL_HD inline Surface surface_at(const SceneView& scene, const RayHit& hit) {
     if (mesh.patches.patches) return patch_surface_at(mesh, hit);
     const uint32_t* corner = mesh.indices + 3 * size_t(hit.triangle);
     const Vec3 a = mesh.positions[corner[0]], b = mesh.positions[corner[1]], c = mesh.positions[corner[2]];
-    const float w = 1.0f - hit.u - hit.v;
+    const real w = 1.0f - hit.u - hit.v;
     Surface surface;
     surface.position = w * a + hit.u * b + hit.v * c;
     surface.geometric_normal = normalize(cross(b - a, c - a));
@@ -153,7 +153,7 @@ OPAL_HD inline Surface surface_at(const SceneView& scene, const RayHit& hit) {
 
 /// A point moved off its surface, towards the side `direction` leaves to, by a little more than its rounding error.
 OPAL_HD inline Vec3 offset_origin(Vec3 position, Vec3 geometric_normal, Vec3 direction) {
-    const float distance = 4.0e-6f * (1.0f + max_abs(position));
+    const real distance = 4.0e-6f * (1.0f + max_abs(position));
     return position + (dot(direction, geometric_normal) >= 0.0f ? distance : -distance) * geometric_normal;
 }
 

@@ -12,14 +12,14 @@ namespace opal {
 /// grazing incidence take many steps. Offers what CellWalk does.
 class SphereTracingWalk {
   public:
-    static constexpr float epsilon_mm = 1.0e-4f;
+    static constexpr real epsilon_mm = 1.0e-4f;
 
     OPAL_HD SphereTracingWalk(const CellField& field, Vec3 origin, Vec3 direction, int cell = -1)
         : field_(field), origin_(origin), direction_(direction) {
         cell_ = locate_cell(field, origin, cell < 0 ? nearby_cell(field, origin) : cell);
     }
 
-    OPAL_HD int next_grain(int current, float& distance, float end) {
+    OPAL_HD int next_grain(int current, real& distance, real end) {
         while (true) {
             const Vec3 position = origin_ + distance * direction_;
             cell_ = locate_cell(field_, position, cell_);

@@ -39,7 +39,7 @@ class SphericalRectangle {
 
     /// Unit direction for two uniform numbers, and the distance (mm) to the rectangle along it (Urena, Fajardo & King 2013, "An
     /// area-preserving parametrization for spherical rectangles").
-    OPAL_HD Vec3 direction(float u, float v, float& distance_mm) const {
+    OPAL_HD Vec3 direction(real u, real v, real& distance_mm) const {
         const double z2 = z0_ * z0_, height = fabs(z0_);
         const double n0 = -y0_ / sqrt(z2 + y0_ * y0_), n2 = y1_ / sqrt(z2 + y1_ * y1_);
         // Inner angles at the corners (x0, y1) and (x0, y0).
@@ -57,10 +57,10 @@ class SphericalRectangle {
         const double cosine2 = 1.0 - h * h;
         const double y = cosine2 > 0.0 ? clamp(h * sqrt(d2 / cosine2), y0_, y1_) : y1_;
         const double distance = sqrt(d2 + y * y);
-        distance_mm = float(distance);
+        distance_mm = real(distance);
         const double a = x / distance, b = y / distance, c = z0_ / distance;
-        return normalize(Vec3{float(a * x_[0] + b * y_[0] + c * z_[0]), float(a * x_[1] + b * y_[1] + c * z_[1]),
-                              float(a * x_[2] + b * y_[2] + c * z_[2])});
+        return normalize(Vec3{real(a * x_[0] + b * y_[0] + c * z_[0]), real(a * x_[1] + b * y_[1] + c * z_[1]),
+                              real(a * x_[2] + b * y_[2] + c * z_[2])});
     }
 
   private:

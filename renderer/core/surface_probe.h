@@ -18,10 +18,10 @@ class SurfaceProbe {
         return settle(intersector_.closest(ray_, hit_));
     }
     /// 0 where there is nothing.
-    OPAL_HD float distance_mm() { return !found() ? 0.0f : (meets_light_ ? light_.distance_mm : hit_.distance_mm); }
+    OPAL_HD real distance_mm() { return !found() ? 0.0f : (meets_light_ ? light_.distance_mm : hit_.distance_mm); }
     /// The same for a ray inside a body, which holds no lights, where only what lies within `within_mm` matters: 3e38 where
     /// nothing does. A short ray costs less than one to the far side; where one was not enough, the next goes all the way.
-    OPAL_HD float distance_mm(float within_mm) {
+    OPAL_HD real distance_mm(real within_mm) {
         if (asked_) return distance_mm();
         if (within_mm <= clear_mm_) return 3.0e38f;
         if (clear_mm_ > 0.0f) return distance_mm();
@@ -50,7 +50,7 @@ class SurfaceProbe {
     const Ray& ray_;
     RayHit hit_;
     LightHit light_;
-    float clear_mm_ = 0.0f;  ///< nothing lies within
+    real clear_mm_ = 0.0f;  ///< nothing lies within
     bool direct_;
     bool asked_ = false;
     bool found_ = false;

@@ -10,22 +10,22 @@ namespace opal {
 template <int N>
 struct DielectricSplit {
     Vec3 reflected, refracted;  ///< unit; refracted for the hero, zero under total reflection
-    float reflectance[N];
+    real reflectance[N];
 };
 
 /// How light of unit `direction` leaves a smooth surface, with the lanes' indices before and beyond it. Where an interpolated
 /// normal would send a ray through the wrong side of the face, the face's own normal is used.
 template <int N>
-OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface& surface, const float* index_before,
-                                                   const float* index_beyond) {
+OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface& surface, const real* index_before,
+                                                   const real* index_beyond) {
     const bool entering = dot(direction, surface.geometric_normal) < 0.0f;
     const Vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
     const Vec3 shading = entering ? surface.shading_normal : -surface.shading_normal;
     DielectricSplit<N> split;
     for (const bool last : {false, true}) {
         const Vec3 normal = last ? face : shading;
-        const float cos_incident = max_of(1.0e-7f, min_of(1.0f, -dot(direction, normal)));
-        float cos_transmitted = 0.0f;
+        const real cos_incident = max_of(1.0e-7f, min_of(1.0f, -dot(direction, normal)));
+        real cos_transmitted = 0.0f;
         for (int i = N - 1; i >= 0; --i)
             split.reflectance[i] = fresnel_dielectric(cos_incident, index_beyond[i] / index_before[i], cos_transmitted);
         const bool passes = cos_transmitted > 0.0f;
@@ -40,10 +40,10 @@ OPAL_HD inline DielectricSplit<N> split_dielectric(Vec3 direction, const Surface
 }
 
 /// Cosine-distributed direction around a normal; density cos / pi.
-OPAL_HD inline Vec3 sample_cosine(Vec3 normal, float u1, float u2) {
-    const float radius = sqrtf(u1), angle_rad = 2.0f * pi_f * u2;
-    const float height = sqrtf(max_of(0.0f, 1.0f - u1));
-    return normalize(Frame(normal).world_from_local({radius * cosf(angle_rad), radius * sinf(angle_rad), height}));
+OPAL_HD inline Vec3 sample_cosine(Vec3 normal, real u1, real u2) {
+    const real radius = sqrt(u1), angle_rad = 2.0f * pi_f * u2;
+    const real height = sqrt(max_of(0.0f, 1.0f - u1));
+    return normalize(Frame(normal).world_from_local({radius * cos(angle_rad), radius * sin(angle_rad), height}));
 }
 
 }  // namespace opal

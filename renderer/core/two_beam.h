@@ -7,48 +7,49 @@
 namespace opal {
 
 /// sin^2(x) for any |x| up to some thousands: reduction to a quarter period, then a polynomial; absolute error below 1e-6 plus
-/// the rounding of x itself. Free of branches so that the lanes vectorize.
-OPAL_HD inline float sine_squared(float x) {
-    const float turns = x * (1.0f / pi_f);
-    const float y = pi_f * (turns - rintf(turns));
-    const float y2 = y * y;
-    const float s =
+/// the rounding of x itself. Free of branches so that the lanes vectorize. In double precision the library's own.
+OPAL_HD inline real sine_squared(real x) {
+    if constexpr (sizeof(real) > sizeof(float)) return square(sin(x));
+    const real turns = x * (1.0f / pi_f);
+    const real y = pi_f * (turns - rint(turns));
+    const real y2 = y * y;
+    const real s =
         y * (1.0f + y2 * (-1.0f / 6.0f +
                           y2 * (1.0f / 120.0f + y2 * (-1.0f / 5040.0f + y2 * (1.0f / 362880.0f + y2 * (-1.0f / 39916800.0f))))));
     return s * s;
 }
 
 /// sinh^2(x) / x^2 for x^2 = `x2` >= 0, capped where the reflectance is 1 to single precision anyway.
-OPAL_HD inline float sinh_squared_over_square(float x2) {
-    const float x = min_of(sqrtf(x2), 12.0f);
+OPAL_HD inline real sinh_squared_over_square(real x2) {
+    const real x = min_of(sqrt(x2), 12.0f);
     if (x < 0.05f) return 1.0f + x2 * (1.0f / 3.0f) + x2 * x2 * (2.0f / 45.0f);
-    const float s = sinhf(x);
+    const real s = sinh(x);
     return s * s / (x * x);
 }
 
 /// Below this (gamma t)^2 outside the band, sin^2(x) / x^2 is taken from its series: no division by a rounded-off zero.
-inline constexpr float band_edge_x2 = 1.0e-3f;
+inline constexpr real band_edge_x2 = 1.0e-3f;
 
 /// Odds of reflection r / (1 - r) of one coherent block:
 ///   r / (1 - r) = (kappa t)^2 sinh^2(gamma t) / (gamma t)^2,  (gamma t)^2 = (kappa t)^2 - (delta t)^2,
 /// which is the two-beam reflectance kappa^2 sinh^2 / (gamma^2 cosh^2 + delta^2 sinh^2) written without overflow; beyond the band
 /// edge sinh becomes sin. `kappa_t` and `delta_t` are dimensionless: coupling and detuning times the block's thickness.
-OPAL_HD inline float block_reflection_odds(float kappa_t, float delta_t) {
-    const float kappa2 = kappa_t * kappa_t;
-    const float x2 = delta_t * delta_t - kappa2;
+OPAL_HD inline real block_reflection_odds(real kappa_t, real delta_t) {
+    const real kappa2 = kappa_t * kappa_t;
+    const real x2 = delta_t * delta_t - kappa2;
     if (x2 <= 0.0f) return kappa2 * sinh_squared_over_square(-x2);
     if (x2 < band_edge_x2) return kappa2 * (1.0f - x2 * (1.0f / 3.0f));
-    return kappa2 * sine_squared(sqrtf(x2)) / x2;
+    return kappa2 * sine_squared(sqrt(x2)) / x2;
 }
 
 /// Optical constants of the crystal at the lanes of a path.
 template <int N>
 struct LaneOptics {
-    float wavelength_nm[N];
-    float n_eff[N];
-    float contrast[N];        ///< |n_sphere^2 - n_medium^2|
-    float relative_index[N];  ///< n_sphere / n_medium
-    float surface_index[N];   ///< at the opal's surface
+    real wavelength_nm[N];
+    real n_eff[N];
+    real contrast[N];        ///< |n_sphere^2 - n_medium^2|
+    real relative_index[N];  ///< n_sphere / n_medium
+    real surface_index[N];   ///< at the opal's surface
 };
 
 /// How many families of planes are looked at together: as many as a vector register of the host holds; a thread of a device takes
@@ -61,16 +62,16 @@ inline constexpr int beam_block_size = 8;
 
 /// Families of planes met at given angles by light of one polarization each: everything but the wavelength.
 struct BeamBlock {
-    float cosine[beam_block_size];     ///< |w . g|, direction of travel against the planes' normal
-    float g_per_nm[beam_block_size];   ///< |G|
-    float form[beam_block_size];       ///< |eps_G| over the contrast of permittivity; 0: no family
-    float block_nm[beam_block_size];   ///< thickness of one coherent block along the normal
-    float polarized[beam_block_size];  ///< 1: p, in the plane of incidence; 0: s
-    float share[beam_block_size];      ///< part of the path that lies in blocks which hold this family
+    real cosine[beam_block_size];     ///< |w . g|, direction of travel against the planes' normal
+    real g_per_nm[beam_block_size];   ///< |G|
+    real form[beam_block_size];       ///< |eps_G| over the contrast of permittivity; 0: no family
+    real block_nm[beam_block_size];   ///< thickness of one coherent block along the normal
+    real polarized[beam_block_size];  ///< 1: p, in the plane of incidence; 0: s
+    real share[beam_block_size];      ///< part of the path that lies in blocks which hold this family
 };
 
 /// One beam, in every place of a block.
-OPAL_HD inline BeamBlock single_beam(float cosine, float g_per_nm, float form, float block_nm, bool p_polarized) {
+OPAL_HD inline BeamBlock single_beam(real cosine, real g_per_nm, real form, real block_nm, bool p_polarized) {
     BeamBlock beams;
     for (int j = 0; j < beam_block_size; ++j) {
         beams.cosine[j] = cosine;
@@ -84,8 +85,8 @@ OPAL_HD inline BeamBlock single_beam(float cosine, float g_per_nm, float form, f
 }
 
 /// C of the coupling: 1 (s) or |1 - 2 c^2| (p).
-OPAL_HD inline float polarization_factor(float polarized, float cosine) {
-    return 1.0f - polarized + polarized * fabsf(1.0f - 2.0f * cosine * cosine);
+OPAL_HD inline real polarization_factor(real polarized, real cosine) {
+    return 1.0f - polarized + polarized * fabs(1.0f - 2.0f * cosine * cosine);
 }
 
 /// Rates (1/mm) at which light on its way through a pile of incoherently stacked blocks is turned by families of planes, per lane
@@ -97,33 +98,33 @@ OPAL_HD inline float polarization_factor(float polarized, float cosine) {
 /// Rates saturate towards `max_rate_per_mm`, harmonically, so that light inside a band is not turned without end. The loops over
 /// families are free of branches and calls so that they vectorize; the few elements inside a band are mended afterwards.
 template <int N>
-OPAL_HD inline void reflection_rates(const BeamBlock& beams, const LaneOptics<N>& optics, float max_rate_per_mm,
-                                     float (*rate_per_mm)[beam_block_size]) {
-    float bragg_over_n_nm[beam_block_size], coupling[beam_block_size], detuning[beam_block_size], blocks_per_mm[beam_block_size];
+OPAL_HD inline void reflection_rates(const BeamBlock& beams, const LaneOptics<N>& optics, real max_rate_per_mm,
+                                     real (*rate_per_mm)[beam_block_size]) {
+    real bragg_over_n_nm[beam_block_size], coupling[beam_block_size], detuning[beam_block_size], blocks_per_mm[beam_block_size];
     OPAL_SIMD
     for (int j = 0; j < beam_block_size; ++j) {
-        const float cosine = max_of(beams.cosine[j], 1.0e-4f);
+        const real cosine = max_of(beams.cosine[j], 1.0e-4f);
         bragg_over_n_nm[j] = 2.0f * cosine / beams.g_per_nm[j];
         coupling[j] = pi_f * beams.form[j] * polarization_factor(beams.polarized[j], cosine) * beams.block_nm[j] / cosine;
         detuning[j] = pi_f * beams.g_per_nm[j] * beams.block_nm[j];
         blocks_per_mm[j] = beams.share[j] * cosine * 1.0e6f / beams.block_nm[j];
     }
-    float kappa_t[N][beam_block_size], delta_t[N][beam_block_size], lowest_x2[beam_block_size];
+    real kappa_t[N][beam_block_size], delta_t[N][beam_block_size], lowest_x2[beam_block_size];
     for (int j = 0; j < beam_block_size; ++j) lowest_x2[j] = 3.0e38f;
     for (int i = 0; i < N; ++i) {
-        const float n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
-        const float strength = optics.contrast[i] / (optics.n_eff[i] * optics.wavelength_nm[i]);
+        const real n_over_lambda = optics.n_eff[i] / optics.wavelength_nm[i];
+        const real strength = optics.contrast[i] / (optics.n_eff[i] * optics.wavelength_nm[i]);
         OPAL_SIMD
         for (int j = 0; j < beam_block_size; ++j) {
-            const float ratio = bragg_over_n_nm[j] * n_over_lambda;
-            const float near = ratio >= 0.5f && ratio <= 2.0f ? coupling[j] : 0.0f;
+            const real ratio = bragg_over_n_nm[j] * n_over_lambda;
+            const real near = ratio >= 0.5f && ratio <= 2.0f ? coupling[j] : 0.0f;
             kappa_t[i][j] = near * strength;
             delta_t[i][j] = detuning[j] * (ratio - 1.0f);
-            const float kappa2 = kappa_t[i][j] * kappa_t[i][j];
-            const float x2 = delta_t[i][j] * delta_t[i][j] - kappa2;
+            const real kappa2 = kappa_t[i][j] * kappa_t[i][j];
+            const real x2 = delta_t[i][j] * delta_t[i][j] - kappa2;
             lowest_x2[j] = x2 < lowest_x2[j] ? x2 : lowest_x2[j];
-            const float outside = x2 < band_edge_x2 ? band_edge_x2 : x2;
-            rate_per_mm[i][j] = blocks_per_mm[j] * kappa2 * sine_squared(sqrtf(outside)) / outside;
+            const real outside = x2 < band_edge_x2 ? band_edge_x2 : x2;
+            rate_per_mm[i][j] = blocks_per_mm[j] * kappa2 * sine_squared(sqrt(outside)) / outside;
         }
     }
     // Whether one is inside a band is asked of all at once.

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "renderer/core/compat.h"
+#include "renderer/core/real.h"
 
 namespace opal {
 
-inline constexpr float pi_f = 3.14159265358979f;
+inline constexpr real pi_f = real(3.14159265358979323846);
 
-template <typename T>
-OPAL_HD inline T min_of(T a, T b) {
+template <typename A, typename B>
+OPAL_HD inline auto min_of(A a, B b) {
     return b < a ? b : a;
 }
-template <typename T>
-OPAL_HD inline T max_of(T a, T b) {
+template <typename A, typename B>
+OPAL_HD inline auto max_of(A a, B b) {
     return a < b ? b : a;
 }
-OPAL_HD inline float square(float x) {
+OPAL_HD inline real square(real x) {
     return x * x;
 }
 
 struct Vec3 {
-    float x = 0.0f, y = 0.0f, z = 0.0f;
+    real x = 0.0f, y = 0.0f, z = 0.0f;
 };
 
 OPAL_HD inline Vec3 operator+(Vec3 a, Vec3 b) {
@@ -32,26 +32,26 @@ OPAL_HD inline Vec3 operator-(Vec3 a, Vec3 b) {
 OPAL_HD inline Vec3 operator-(Vec3 a) {
     return {-a.x, -a.y, -a.z};
 }
-OPAL_HD inline Vec3 operator*(float s, Vec3 a) {
+OPAL_HD inline Vec3 operator*(real s, Vec3 a) {
     return {s * a.x, s * a.y, s * a.z};
 }
-OPAL_HD inline Vec3 operator*(Vec3 a, float s) {
+OPAL_HD inline Vec3 operator*(Vec3 a, real s) {
     return s * a;
 }
-OPAL_HD inline float dot(Vec3 a, Vec3 b) {
+OPAL_HD inline real dot(Vec3 a, Vec3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 OPAL_HD inline Vec3 cross(Vec3 a, Vec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-OPAL_HD inline float length(Vec3 a) {
-    return sqrtf(dot(a, a));
+OPAL_HD inline real length(Vec3 a) {
+    return sqrt(dot(a, a));
 }
 OPAL_HD inline Vec3 normalize(Vec3 a) {
     return (1.0f / length(a)) * a;
 }
-OPAL_HD inline float max_abs(Vec3 a) {
-    return max_of(fabsf(a.x), max_of(fabsf(a.y), fabsf(a.z)));
+OPAL_HD inline real max_abs(Vec3 a) {
+    return max_of(fabs(a.x), max_of(fabs(a.y), fabs(a.z)));
 }
 
 /// Mirror image of a direction in the plane with unit normal `normal`.
@@ -69,9 +69,9 @@ struct Frame {
     Vec3 tangent, bitangent, normal;
 
     OPAL_HD explicit Frame(Vec3 n) : normal(n) {
-        const float sign = copysignf(1.0f, n.z);
-        const float a = -1.0f / (sign + n.z);
-        const float b = n.x * n.y * a;
+        const real sign = copysign(1.0f, n.z);
+        const real a = -1.0f / (sign + n.z);
+        const real b = n.x * n.y * a;
         tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
         bitangent = {b, sign + n.y * n.y * a, -n.y};
     }
@@ -81,7 +81,7 @@ struct Frame {
 
 /// Unit quaternion (x, y, z, w), the order of the file.
 struct Quaternion {
-    float x = 0.0f, y = 0.0f, z = 0.0f, w = 1.0f;
+    real x = 0.0f, y = 0.0f, z = 0.0f, w = 1.0f;
 
     OPAL_HD Quaternion conjugate() const { return {-x, -y, -z, w}; }
     /// The rotation `other` followed by this one.
@@ -100,7 +100,7 @@ struct Quaternion {
 struct RigidTransform {
     Quaternion rotation;
     Vec3 origin;
-    float scale = 1.0f;
+    real scale = 1.0f;
 
     OPAL_HD Vec3 world_from_local_direction(Vec3 v) const { return rotation.rotate(v); }
     OPAL_HD Vec3 local_from_world_direction(Vec3 v) const { return rotation.conjugate().rotate(v); }

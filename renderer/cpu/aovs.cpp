@@ -93,7 +93,7 @@ void write_grain_id(const AovScene& scene, const FirstHit& first, int, int, floa
     const RigidTransform& transform = opal->world_from_object;
     GrainPath walk(opal->grains, transform.local_from_world_point(first.surface.position),
                    transform.local_from_world_direction(-first.surface.geometric_normal));
-    float distance = 0.0f;
+    real distance = 0.0f;
     *target = float(walk.next_grain(0, distance, 3.0f / opal->grains.voxels.voxels_per_mm));
 }
 
@@ -120,10 +120,10 @@ FamilyTurn first_turn(const AovScene& scene, const OpalView& opal, const Ray& in
     const RigidTransform& transform = opal.world_from_object;
     GrainPath walk(opal.grains, transform.local_from_world_point(inside.origin),
                    transform.local_from_world_direction(inside.direction));
-    const float end = exit.distance_mm / transform.scale;
-    float distance = 0.0f;
+    const real end = exit.distance_mm / transform.scale;
+    real distance = 0.0f;
     for (int grain = walk.next_grain(0, distance, end); grain != 0;) {
-        const float entered = distance;
+        const real entered = distance;
         const int next = walk.next_grain(grain, distance, end);
         const FamilyTurn turn =
             strongest_family(opal, scene.view.spectra, grain, inside.direction, (distance - entered) * transform.scale);
@@ -139,8 +139,8 @@ void write_hkl(const AovScene& scene, const FirstHit& first, int, int, float* ta
     const Vec3 direction = first.ray.direction;
     Vec3 normal = first.surface.shading_normal;
     if (dot(direction, normal) >= 0.0f) return;
-    const float index = table_at(opal->surface_index, 550.0f), cos_incident = -dot(direction, normal);
-    float cos_transmitted = 0.0f;
+    const real index = table_at(opal->surface_index, 550.0f), cos_incident = -dot(direction, normal);
+    real cos_transmitted = 0.0f;
     fresnel_dielectric(cos_incident, index, cos_transmitted);
     const Vec3 refracted = refract(direction, normal, index, cos_incident, cos_transmitted);
     const FamilyTurn turn =

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "formats/error.h"
@@ -62,12 +63,12 @@ void occlude_by_piece(const RTCOccludedFunctionNArguments* call) {
 RTCGeometry EmbreeScene::triangles(const MeshData& mesh) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copied into Embree's own buffers: it reads 16 bytes at the last vertex.
-    auto* positions = static_cast<Vec3*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
+    auto* positions = static_cast<std::array<float, 3>*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                         3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
     if (!positions || !indices) throw SystemError("Embree: out of memory");
-    std::copy(mesh.positions.begin(), mesh.positions.end(), positions);
+    for (const Vec3& position : mesh.positions) *positions++ = {float(position.x), float(position.y), float(position.z)};
     std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
     return geometry;
 }

@@ -48,7 +48,7 @@ class PhotonCounts {
         const Vec3 size = high - low;
         bounds_ = {0.5f * (low + high), 0.5f * length(size)};
         cell_mm_ = max_abs(size) / float(cells_across);
-        const float sizes[3] = {size.x, size.y, size.z};
+        const real sizes[3] = {size.x, size.y, size.z};
         for (int axis = 0; axis < 3; ++axis) guide.cells[axis] = std::max(1, int(std::ceil(sizes[axis] / cell_mm_ - 0.01f)));
         guide.corner_mm = low;
         guide.cells_per_mm = {float(guide.cells[0]) / size.x, float(guide.cells[1]) / size.y, float(guide.cells[2]) / size.z};

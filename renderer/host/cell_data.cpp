@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "formats/units.h"
 #include "renderer/host/cell_neighbors.h"
@@ -43,7 +44,7 @@ CellData::CellData(const std::vector<Site>& sites, ConvexBounds bounds) {
     double largest_mm = 0.0;
     for (int axis = 0; axis < 3; ++axis)
         largest_mm = std::max({largest_mm, std::abs(box_mm.min()[axis]), std::abs(box_mm.max()[axis])});
-    placement_.rounding_mm = float(roundings * 0x1p-24 * largest_mm);
+    placement_.rounding_mm = real(0.5 * roundings * double(std::numeric_limits<real>::epsilon()) * largest_mm);
     keep_visible(bounds);
     find_neighbors(bounds);
     fill_start_grid(box_mm);

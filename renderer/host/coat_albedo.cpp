@@ -18,7 +18,7 @@ double albedo_at(const Ggx& ggx, float eta, float cosine) {
         for (int j = 0; j < strata; ++j) {
             const Vec3 half = ggx.sample_visible(out, (float(i) + 0.5f) / strata, (float(j) + 0.5f) / strata);
             const Vec3 in = 2.0f * dot(out, half) * half - out;
-            float unused;
+            real unused;
             if (in.z > 0.0f)
                 sum += double(ggx.shadowing(out, in) * fresnel_dielectric(std::fmin(1.0f, dot(out, half)), eta, unused));
         }

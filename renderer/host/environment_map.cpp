@@ -90,7 +90,8 @@ Picture picture_from_file(const std::filesystem::path& path, std::vector<std::st
             const int column = ((map.width - 1 - x) + 3 * map.width / 4) % map.width;
             const float* pixel = image.pixel(column, y);
             Rgb value{pixel[0], pixel[green], pixel[blue]};
-            for (float* const component : {&value.r, &value.g, &value.b}) *component = negatives.checked(*component, column, y);
+            for (real* const component : {&value.r, &value.g, &value.b})
+                *component = negatives.checked(float(*component), column, y);
             map.texels.push_back(value);
         }
     negatives.finish(notices);

@@ -91,7 +91,7 @@ std::array<float, 3> sigmoid_coefficients(Rgb color) {
 }
 
 UpsampledColor upsample_reflectance(UpsamplingMethod method, Rgb color) {
-    if (method != UpsamplingMethod::sigmoid) return {{color.r, color.g, color.b}, 1.0f};
+    if (method != UpsamplingMethod::sigmoid) return {{float(color.r), float(color.g), float(color.b)}, 1.0f};
     const std::array<float, 3> c = sigmoid_coefficients(color);
     return {{c[0], c[1], c[2]}, 1.0f};
 }

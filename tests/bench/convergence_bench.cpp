@@ -26,6 +26,13 @@ namespace {
 
 constexpr int num_seeds = 4;
 
+int bench_width(bool quick) {
+    return quick ? 48 : 80;
+}
+int most_samples(bool quick) {
+    return quick ? 64 : 256;
+}
+
 struct Setting {
     std::string name, sampler;
     int companions;
@@ -99,12 +106,18 @@ struct Measured {
     std::vector<double> seconds;
 };
 
-Measured measure(const std::filesystem::path& scene_file, const std::filesystem::path& opal, const Setting& setting, int width,
-                 int samples, std::uint64_t first_seed = 1000) {
-    const SceneDescription description = read_scene(
-        scene_file, {"object.0.file='" + opal.string() + "'", fmt::format("render.width={}", width),
-                     fmt::format("render.height={}", width * 3 / 4), "render.sampler=" + setting.sampler,
-                     fmt::format("opal.companions={}", setting.companions), fmt::format("render.guided={}", setting.guided)});
+/// An opal in some light.
+struct LitOpal {
+    std::filesystem::path scene, opal;
+    std::string environment;
+};
+
+Measured measure(const LitOpal& lit, const Setting& setting, int width, int samples, std::uint64_t first_seed = 1000) {
+    const SceneDescription description =
+        read_scene(lit.scene, {"object.0.file='" + lit.opal.string() + "'", "environment.kind=" + lit.environment,
+                               fmt::format("render.width={}", width), fmt::format("render.height={}", width * 3 / 4),
+                               "render.sampler=" + setting.sampler, fmt::format("opal.companions={}", setting.companions),
+                               fmt::format("render.guided={}", setting.guided)});
     std::vector<std::string> notices;
     const HostScene host(description, notices);
     const EmbreeScene intersector(host.meshes());
@@ -175,46 +188,52 @@ void build_opal(const std::filesystem::path& recipe, const std::filesystem::path
     if (std::system(command.c_str()) != 0) throw SystemError("failed: " + command);
 }
 
+/// Measures all settings and adds their rows to the tables.
+void compare_settings(const std::string& scene, const LitOpal& lit, bool quick, std::ofstream& curves, std::ofstream& ratios) {
+    const int width = bench_width(quick), samples = most_samples(quick);
+    std::vector<Measured> measured;
+    for (const Setting& setting : settings) measured.push_back(measure(lit, setting, width, samples));
+    const Measured reference = measure(lit, settings[1], width, 2 * samples, 2000);
+    const std::vector<std::vector<ErrorRow>> errors = error_curves(measured, reference);
+    const ErrorRow& last = errors.front().back();
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        for (const ErrorRow& row : errors[i])
+            curves << fmt::format("{},{},\"{}\",{},{:.4g},{:.4g},{:.2g},{:.4g},{:.2g}\n", scene, lit.environment,
+                                  settings[i].name, row.samples, row.seconds, row.luminance, row.luminance_se, row.chroma,
+                                  row.chroma_se);
+        const auto ratio = [&](const auto& error_of, const auto& cost_of) {
+            return cost_of(last) / cost_at_error(errors[i], error_of, cost_of, error_of(last));
+        };
+        const auto luminance = [](const ErrorRow& row) { return row.luminance; };
+        const auto chroma = [](const ErrorRow& row) { return row.chroma; };
+        const auto cost_samples = [](const ErrorRow& row) { return double(row.samples); };
+        const auto cost_seconds = [](const ErrorRow& row) { return row.seconds; };
+        const std::string line = fmt::format("{},{},\"{}\",{:.3g},{:.3g},{:.3g},{:.3g}", scene, lit.environment, settings[i].name,
+                                             ratio(luminance, cost_samples), ratio(chroma, cost_samples),
+                                             ratio(luminance, cost_seconds), ratio(chroma, cost_seconds));
+        ratios << line << '\n';
+        fmt::print("{}\n", line);
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 void bench_convergence(const std::filesystem::path& folder, bool quick) {
     std::filesystem::create_directories(folder);
-    const int width = quick ? 48 : 80, samples = quick ? 64 : 256;
     AtomicFile curves_file(folder / "convergence.csv"), ratios_file(folder / "convergence_ratios.csv"),
         kinds_file(folder / "convergence_paths.csv");
     std::ofstream curves(curves_file.temporary_path()), ratios(ratios_file.temporary_path()), kinds(kinds_file.temporary_path());
     kinds << "scene,scatterings,diffractions,paths,light,second_moment\n";
-    curves << "scene,setting,samples,seconds,relmse_luminance,relmse_luminance_se,relmse_chroma,relmse_chroma_se\n";
-    ratios << "scene,setting,samples_ratio_luminance,samples_ratio_chroma,time_ratio_luminance,time_ratio_chroma\n";
+    curves << "scene,light,setting,samples,seconds,relmse_luminance,relmse_luminance_se,relmse_chroma,relmse_chroma_se\n";
+    ratios << "scene,light,setting,samples_ratio_luminance,samples_ratio_chroma,time_ratio_luminance,time_ratio_chroma\n";
     for (const std::string scene : {"precious_opal", "white_opal", "fire_opal"}) {
         const std::filesystem::path example = std::filesystem::path(OPAL_EXAMPLES) / scene;
         const std::filesystem::path opal = std::filesystem::absolute(folder) / (scene + ".vdb");
         build_opal(example / "recipe.toml", opal);
-        std::vector<Measured> measured;
-        for (const Setting& setting : settings)
-            measured.push_back(measure(example / "scene.toml", opal, setting, width, samples));
-        const Measured reference = measure(example / "scene.toml", opal, settings[1], width, 2 * samples, 2000);
-        const std::vector<std::vector<ErrorRow>> errors = error_curves(measured, reference);
-        const ErrorRow& last = errors.front().back();
-        for (std::size_t i = 0; i < settings.size(); ++i) {
-            for (const ErrorRow& row : errors[i])
-                curves << fmt::format("{},\"{}\",{},{:.4g},{:.4g},{:.2g},{:.4g},{:.2g}\n", scene, settings[i].name, row.samples,
-                                      row.seconds, row.luminance, row.luminance_se, row.chroma, row.chroma_se);
-            const auto ratio = [&](const auto& error_of, const auto& cost_of) {
-                return cost_of(last) / cost_at_error(errors[i], error_of, cost_of, error_of(last));
-            };
-            const auto luminance = [](const ErrorRow& row) { return row.luminance; };
-            const auto chroma = [](const ErrorRow& row) { return row.chroma; };
-            const auto cost_samples = [](const ErrorRow& row) { return double(row.samples); };
-            const auto cost_seconds = [](const ErrorRow& row) { return row.seconds; };
-            const std::string line =
-                fmt::format("{},\"{}\",{:.3g},{:.3g},{:.3g},{:.3g}", scene, settings[i].name, ratio(luminance, cost_samples),
-                            ratio(chroma, cost_samples), ratio(luminance, cost_seconds), ratio(chroma, cost_seconds));
-            ratios << line << '\n';
-            fmt::print("{}\n", line);
-            std::fflush(stdout);
-        }
-        for (const PathKind& kind : path_kinds(example / "scene.toml", opal, width, 4 * samples))
+        for (const std::string environment : {"studio", "tent"})
+            compare_settings(scene, {example / "scene.toml", opal, environment}, quick, curves, ratios);
+        for (const PathKind& kind : path_kinds(example / "scene.toml", opal, bench_width(quick), 4 * most_samples(quick)))
             kinds << fmt::format("{},{},{},{:.4f},{:.4f},{:.4f}\n", scene, kind.scatterings, kind.diffractions, kind.paths,
                                  kind.light, kind.second_moment);
         std::filesystem::remove(opal);

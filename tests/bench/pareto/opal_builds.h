@@ -31,6 +31,8 @@ class OpalBuilds {
     /// The opal of a variant. Throws SystemError with the command where it fails.
     const OpalBuild& build(const ParetoScene& scene, const ParetoVariant& variant);
 
+    const std::filesystem::path& folder() const { return folder_; }
+
     /// What builds it, for people.
     static std::string command(const ParetoScene& scene, const ParetoVariant& variant);
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench_chart.h"
+#include "double_subject.h"
 #include "formats/atomic_file.h"
 #include "formats/command.h"
 #include "formats/error.h"
@@ -41,6 +42,8 @@ std::vector<std::string> scene_settings(const ParetoVariant& variant, const std:
 
 std::string render_command(const ParetoScene& scene, const ParetoVariant& variant) {
     if (variant.spectral != SpectralChoice::continuous) return "opal-bench pareto (fixed wavelengths are there alone)";
+    if (variant.in_double) return "opal-bench pareto (draws with opal-draw-double)";
+    if (variant.surfaces == Surfaces::own_tree) return "opal-bench pareto (opal-render has the tree on devices alone)";
     std::string text = fmt::format("opal-render '{}' -o {}.exr --set object.0.file={}.vdb", in_project(scene).scene.string(),
                                    scene.name, scene.name);
     for (const std::string& assignment : variant.scene) text += fmt::format(" --set '{}'", assignment);
@@ -101,7 +104,7 @@ SceneLights scene_lights(const ParetoScene& scene, OpalBuilds& builds, const Ext
 }
 
 /// What the pictures of a variant converge to, apart from those of the exact one: the squared error of patches, that of the mean.
-std::string errors(const Subject& subject, const Subject& exact, Lighting lighting, const SeedPictures& light,
+std::string errors(const Drawings& subject, const Drawings& exact, Lighting lighting, const SeedPictures& light,
                    const Patches& patches) {
     const Estimate bias =
         squared_bias(patch_means(subject.pictures(lighting), patches), patch_means(exact.pictures(lighting), patches),
@@ -111,9 +114,9 @@ std::string errors(const Subject& subject, const Subject& exact, Lighting lighti
 }
 
 /// One line of the table. Cost: processor time of a million pixels whose luminance and chroma together are noisy by 10 %.
-std::string row(const ParetoScene& scene, const ParetoVariant& variant, const OpalBuild& opal, const Subject& subject,
-                const Subject& exact, const SceneLights& lights, const std::vector<std::uint32_t>& pixels, const Patches& patches,
-                int samples) {
+std::string row(const ParetoScene& scene, const ParetoVariant& variant, const OpalBuild& opal, const Drawings& subject,
+                const Drawings& exact, const SceneLights& lights, const std::vector<std::uint32_t>& pixels,
+                const Patches& patches, int samples) {
     const SeedPictures light = lights.own.at(pixels);
     const Estimate noise = seed_variance(subject.pictures(), relative_weights(light));
     const Estimate sample_s = mean_of(subject.sample_s());
@@ -132,14 +135,20 @@ std::string row(const ParetoScene& scene, const ParetoVariant& variant, const Op
 /// All values of one choice, seed by seed in turn, so that what disturbs the machine disturbs all alike.
 std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vector<ParetoVariant>& variants, OpalBuilds& builds,
                                         const SceneLights& lights, const Extent& extent) {
-    std::vector<std::unique_ptr<Subject>> subjects;
-    const Subject* exact = nullptr;
+    std::vector<std::unique_ptr<Drawings>> subjects;
+    const Drawings* exact = nullptr;
+    std::vector<std::uint32_t> pixels;  // of the exact one, or of the first where that is drawn elsewhere
     for (const ParetoVariant& variant : variants) {
-        subjects.push_back(std::make_unique<Subject>(
-            scene.scene, scene_settings(variant, builds.build(scene, variant).file, extent.width), variant.spectral));
+        const std::vector<std::string> settings = scene_settings(variant, builds.build(scene, variant).file, extent.width);
+        if (variant.in_double) {
+            subjects.push_back(std::make_unique<DoubleSubject>(scene.scene, settings, builds.folder()));
+        } else {
+            auto subject = std::make_unique<Subject>(scene.scene, settings, variant.spectral, variant.surfaces);
+            if (pixels.empty() || variant.exact) pixels = subject->pixels();
+            subjects.push_back(std::move(subject));
+        }
         if (variant.exact) exact = subjects.back().get();
     }
-    const std::vector<std::uint32_t> pixels = exact->pixels();
     const int samples = scene.varies ? extent.samples / 4 : extent.samples;  // the block takes as much longer
     for (int seed = 0; seed < extent.seeds; ++seed)
         for (const auto& subject : subjects) {

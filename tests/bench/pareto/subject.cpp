@@ -28,10 +28,12 @@ EnvironmentMap tent_of(EnvironmentDescription environment, Upsampling upsampling
 
 }  // namespace
 
-Subject::Subject(const std::filesystem::path& scene, const std::vector<std::string>& settings, SpectralChoice spectral)
+Subject::Subject(const std::filesystem::path& scene, const std::vector<std::string>& settings, SpectralChoice spectral,
+                 Surfaces surfaces)
     : description_(read_scene(scene, settings)),
       host_(description_, notices_),
       intersector_(host_.meshes()),
+      tree_(surfaces == Surfaces::own_tree ? std::optional<Bvh>(host_.meshes()) : std::nullopt),
       guides_(host_, intersector_),
       lines_(host_.view().spectra, spectral),
       load_s_(watch_.seconds()),
@@ -41,13 +43,13 @@ std::size_t Subject::memory_bytes() const {
     return scene_memory(guides_.scene()).total_bytes();
 }
 
-template <int N>
-Opponent Subject::mean_of_pixel(const SceneView& view, std::uint32_t pixel, int samples) const {
+template <int N, class Intersector>
+Opponent Subject::mean_of_pixel(const SceneView& view, const Intersector& intersector, std::uint32_t pixel, int samples) const {
     Opponent mean = {};
     PathCounters counters;
     for (int sample = 0; sample < samples; ++sample) {
         PathWavelengths<N> wavelengths;
-        const PathResult<N> result = trace_sample(view, intersector_, pixel, std::uint32_t(sample), wavelengths, counters);
+        const PathResult<N> result = trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, counters);
         Xyz sum{0.0, 0.0, 0.0};
         for (int i = 0; i < wavelengths.count; ++i) {
             const Xyz color = lines_.color(view.spectra, wavelengths.wavelength_nm[i], wavelengths.pdf_per_nm[i]);
@@ -69,19 +71,17 @@ void Subject::draw_lanes(const std::vector<std::uint32_t>& pixels, int samples, 
         view.lights.environment_luminance = tent_.mean_luminance;
     }
     lines_.confine(view.spectra);
+    const BvhView<true> tree = tree_ ? tree_->view<true>(view.meshes) : BvhView<true>();
     std::vector<Opponent> means(pixels.size());
     std::atomic<double> processor_s = 0.0;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4), [&](const tbb::blocked_range<std::size_t>& range) {
         const double begin_s = thread_processor_s();
-        for (std::size_t p = range.begin(); p < range.end(); ++p) means[p] = mean_of_pixel<N>(view, pixels[p], samples);
+        for (std::size_t p = range.begin(); p < range.end(); ++p)
+            means[p] = tree_ ? mean_of_pixel<N>(view, tree, pixels[p], samples)
+                             : mean_of_pixel<N>(view, intersector_, pixels[p], samples);
         processor_s += thread_processor_s() - begin_s;
     });
-    if (lighting == Lighting::tent) {
-        tent_pictures_.push_back(std::move(means));
-        return;
-    }
-    pictures_.push_back(std::move(means));
-    sample_s_.push_back(processor_s / double(pixels.size()) / samples);
+    keep(std::move(means), processor_s / double(pixels.size()) / samples, lighting);
 }
 
 void Subject::draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed, Lighting lighting) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "double_subject.h"
 #include "formats/crystal_defect.h"
 #include "formats/lorenz_mie.h"
 #include "formats/quality.h"
@@ -143,17 +144,24 @@ Variants tessellations(const ParetoScene& scene, bool quick) {
     return variants;
 }
 
-/// The same scene turned about the vertical, all of it: the same picture in other roundings.
-Variants roundings() {
+/// Double precision where it has been built; single with the same search for surfaces; and the same scene turned about the
+/// vertical, all of it: the same picture in other roundings.
+Variants precisions() {
     const double turn_rad = units::rad_from_deg(37.0), distance_mm = 32.0;
     Variants variants = {
         {"precision", "single", {}, {}},
+        {"precision", "single, own tree", {}, {}},
         {"precision",
          "single, scene turned by 37 degrees",
          {},
          {fmt::format("camera.position_mm=[{}, {}, 24.0]", distance_mm * std::sin(turn_rad), -distance_mm * std::cos(turn_rad)),
           "environment.rotate_deg=37.0", "object.0.rotate_deg=[0.0, 0.0, 37.0]"}}};
-    variants.front().exact = true;
+    variants[1].surfaces = Surfaces::own_tree;
+    if (DoubleSubject::available()) {
+        variants.push_back({"precision", "double, own tree", {}, {}});
+        variants.back().in_double = true;
+    }
+    (variants.back().in_double ? variants.back() : variants.front()).exact = true;
     return variants;
 }
 
@@ -216,7 +224,7 @@ std::vector<std::vector<ParetoVariant>> pareto_choices(const ParetoScene& scene,
         words("upsampling", "color.upsampling", {"jakob-hanika", "smits", "basis"}),
         numbers("bounces", "render.max_bounces", few({4, 8, 16, 32, 64, 256, 1024})),
         words("roulette", "render.roulette", {"true", "false"}),
-        roundings(),
+        precisions(),
         whole_settings(scene, quick),
     };
     if (scene.scatters) {
