@@ -1,94 +1,146 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "goniometer.h"
 
-#include <cmath>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
+#include <cmath>
+#include <numeric>
+
+#include "backends.h"
 #include "formats/image.h"
 #include "formats/scene.h"
 #include "formats/units.h"
 #include "renderer/core/path_tracer.h"
+#include "renderer/host/film.h"
 
 namespace opal {
 namespace {
 
-class Mean {
+/// Edge of the detector's pictures, pixels.
+constexpr int picture_edge = 16;
+constexpr int picture_pixels = picture_edge * picture_edge;
+
+int samples_for(int paths) {
+    return (paths + picture_pixels - 1) / picture_pixels;
+}
+
+/// The spectrum's tables for paths of one wavelength: inverting this integrated density gives it for every number in [0, 1), but
+/// for a hundred-thousandth of a nanometre.
+class OneWavelength {
   public:
-    void add(double value) {
-        sum_ += value;
-        square_ += value * value;
-        ++count_;
+    explicit OneWavelength(double wavelength_nm) : pdf_(spectrum_samples, 1.0f), cdf_(spectrum_samples) {
+        constexpr double steepness_per_nm = 1.0e5;
+        for (int i = 0; i < spectrum_samples; ++i)
+            cdf_[std::size_t(i)] = float((double(spectrum_min_nm) + i - wavelength_nm) * steepness_per_nm);
     }
-    Goniometer::Reading reading(double scale) const {
-        const double mean = sum_ / count_;
-        return {scale * mean, scale * std::sqrt(std::max(0.0, square_ / count_ - mean * mean) / (count_ - 1))};
+    void confine(SpectrumTables& tables) const {
+        tables.pdf = pdf_.data();
+        tables.cdf = cdf_.data();
+        tables.alias = {};
     }
 
   private:
-    double sum_ = 0.0, square_ = 0.0;
-    int count_ = 0;
+    std::vector<float> pdf_, cdf_;
 };
 
-/// A ray along `direction` from outside the sample, towards a disc across it.
-Ray towards_disc(Vec3 direction, double disc_radius_mm, double distance_mm, float u, float v) {
-    const float radius_mm = float(disc_radius_mm) * std::sqrt(u), angle_rad = 2.0f * pi_f * v;
-    const Vec3 across =
-        Frame(direction).world_from_local({radius_mm * std::cos(angle_rad), radius_mm * std::sin(angle_rad), 0.0f});
-    return {across - float(distance_mm) * direction, direction};
+/// Looks along `direction` at a square of the plane across it through the origin, from `distance_mm` before it.
+Camera detector_camera(Vec3 direction, double edge_mm, double distance_mm) {
+    const Frame across(direction);
+    Camera camera;
+    camera.position = -float(distance_mm) * direction;
+    camera.forward = direction;
+    camera.right = float(edge_mm) * across.tangent;
+    camera.down = float(edge_mm) * across.bitangent;
+    camera.orthographic = true;
+    return camera;
+}
+
+/// Draws on the processor as the renderer does there.
+void draw_with_embree(const SceneView& view, const EmbreeScene& intersector, Film& film, int samples) {
+    tbb::parallel_for(0, film.num_blocks(), [&](int b) {
+        FilmBlock& block = film.block(b);
+        const PixelWindow window = film.block_window(b);
+        for (int sample = 0; sample < samples; ++sample)
+            for (int y = window.y0; y < window.y1; ++y)
+                for (int x = window.x0; x < window.x1; ++x) {
+                    const std::uint32_t pixel = std::uint32_t(y * film.width() + x);
+                    PathWavelengths<1> wavelengths;
+                    const PathResult<1> result =
+                        trace_sample(view, intersector, pixel, std::uint32_t(sample), wavelengths, block.counters);
+                    film.add(view.spectra, pixel, film_sample(wavelengths, result), block.totals);
+                }
+    });
+}
+
+/// Mean radiance of a film's samples, which all are of one wavelength.
+Goniometer::Reading mean_radiance(const Film& film) {
+    SpectrumTotals totals;
+    for (int b = 0; b < film.num_blocks(); ++b) totals.add(film.block(b).totals);
+    double sum = 0.0, square = 0.0;
+    for (int bin = 0; bin < num_bins; ++bin) {
+        sum += totals.radiance[std::size_t(bin)] * bin_width_nm(bin);
+        square += totals.radiance_squared[std::size_t(bin)] * bin_width_nm(bin) * bin_width_nm(bin);
+    }
+    const double n = double(film.total_samples()), mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, square / n - mean * mean) / (n - 1.0))};
 }
 
 }  // namespace
 
-Goniometer::Goniometer(const std::string& scene_toml, double radius_mm, bool as_devices_do)
+Goniometer::Goniometer(const std::string& scene_toml, double radius_mm, std::string backend)
     : radius_mm_(radius_mm),
-      scene_(parse_scene(scene_toml, "goniometer.toml", {}), notices_),
-      intersector_(scene_.meshes()),
-      view_(scene_.view()) {
-    if (!as_devices_do) return;
-    bvh_.emplace(scene_.meshes());
-    view_ = copied_scene(scene_.view(), arrays_);
-}
-
-double Goniometer::trace(const Ray& ray, double wavelength_nm, std::uint32_t path, std::uint64_t seed) const {
-    PathWavelengths<1> wavelengths{{float(wavelength_nm)}, {1.0f}, 1};
-    PathRandom random(seed, 0, path);
-    PathCounters counters;
-    const float white = table_at(view_.spectra.white, float(wavelength_nm));
-    if (bvh_) {
-        const BvhView<true> rays = bvh_->view<true>(view_.meshes);
-        PathTracer<1, BvhView<true>> tracer(view_, rays, wavelengths, random, counters);
-        return double(tracer.trace(ray).radiance.v[0] / white);
-    }
-    PathTracer<1, EmbreeScene> tracer(view_, intersector_, wavelengths, random, counters);
-    return double(tracer.trace(ray).radiance.v[0] / white);
-}
+      backend_(std::move(backend)),
+      scene_(parse_scene(scene_toml, "goniometer.toml",
+                         {"render.sampler=independent", "render.filter=box", "opal.companions=0",
+                          fmt::format("render.width={}", picture_edge), fmt::format("render.height={}", picture_edge)}),
+             notices_),
+      intersector_(scene_.meshes()) {}
 
 Goniometer::Reading Goniometer::radiance(Vec3 direction, double spot_radius_mm, double wavelength_nm, int paths,
                                          std::uint64_t seed) const {
-    Mean mean;
-    for (int path = 0; path < paths; ++path) {
-        const RandomBlock block = random_block(seed, RandomStream::bench, std::uint64_t(path), 0);
-        const Ray ray = towards_disc(direction, spot_radius_mm, 2.0 * radius_mm_, uniform_float(block.value[0]),
-                                     uniform_float(block.value[1]));
-        mean.add(trace(ray, wavelength_nm, std::uint32_t(path), seed));
+    const OneWavelength line(wavelength_nm);
+    SceneView view = scene_.view();
+    view.seed = seed;
+    view.camera = detector_camera(direction, 2.0 * spot_radius_mm, 2.0 * radius_mm_);
+    line.confine(view.spectra);
+    Film film(picture_edge, picture_edge, false);
+    if (const MakeDevice make_device = backend_maker(backend_, scene_.meshes())) {
+        std::vector<int> blocks(std::size_t(film.num_blocks()));
+        std::iota(blocks.begin(), blocks.end(), 0);
+        make_device(view, film)->advance(film, blocks, std::uint32_t(samples_for(paths)));
+    } else {
+        draw_with_embree(view, intersector_, film, samples_for(paths));
     }
-    return mean.reading(1.0);
+    const Reading found = mean_radiance(film);
+    const double white = double(table_at(view.spectra.white, float(wavelength_nm)));
+    return {found.mean / white, found.standard_error / white};
 }
 
 Goniometer::Reading Goniometer::exchange(const EnvironmentMap& detector, double wavelength_nm, int paths,
                                          std::uint64_t seed) const {
+    // One direction from each of as many strata; neighbours in pairs tell, if anything too pessimistically, how much it scatters.
+    constexpr int strata = 32, num_directions = strata * strata;
     const EnvironmentView view = detector.view();
-    Mean mean;
-    for (int path = 0; path < paths; ++path) {
-        const RandomBlock block = random_block(seed, RandomStream::bench, std::uint64_t(path), 0);
-        const Vec3 towards = sample_environment(view, uniform_float(block.value[0]), uniform_float(block.value[1]));
+    double sum = 0.0, squared_error = 0.0, first_of_pair = 0.0;
+    for (int i = 0; i < num_directions; ++i) {
+        const RandomBlock block = random_block(seed, RandomStream::bench, std::uint64_t(i), 0);
+        const Vec3 towards = sample_environment(view, (float(i / strata) + uniform_float(block.value[0])) / strata,
+                                                (float(i % strata) + uniform_float(block.value[1])) / strata);
         const float pdf = environment_pdf(view, towards);
-        const float color = environment_color(scene_.view().spectra, environment_footprint(view, towards), float(wavelength_nm));
-        const double sensitivity = pdf > 0.0f ? double(color / pdf) : 0.0;
-        const Ray ray =
-            towards_disc(-towards, radius_mm_, 2.0 * radius_mm_, uniform_float(block.value[2]), uniform_float(block.value[3]));
-        mean.add(sensitivity * trace(ray, wavelength_nm, std::uint32_t(path), seed));
+        double flux = 0.0;
+        if (pdf > 0.0f) {
+            const float color =
+                environment_color(scene_.view().spectra, environment_footprint(view, towards), float(wavelength_nm));
+            const Reading seen = radiance(-towards, radius_mm_, wavelength_nm, paths / num_directions,
+                                          seed + std::uint64_t(num_directions) * std::uint64_t(1 + i));
+            flux = 4.0 * radius_mm_ * radius_mm_ * double(color / pdf) * seen.mean / num_directions;
+        }
+        sum += flux;
+        if (i % 2 == 1) squared_error += (flux - first_of_pair) * (flux - first_of_pair);
+        first_of_pair = flux;
     }
-    return mean.reading(units::pi * radius_mm_ * radius_mm_);
+    return {sum, std::sqrt(squared_error)};
 }
 
 void write_cap(const std::filesystem::path& path, Vec3 direction, double angle_deg) {

@@ -12,14 +12,9 @@
 namespace opal {
 namespace {
 
-/// Single rays, which devices do not trace: "cpu" and "loop" alone.
-class PlatesInTheGoniometer : public OnBackends {
-  protected:
-    void SetUp() override {
-        OnBackends::SetUp();
-        if (std::string(GetParam()) == "cuda") GTEST_SKIP() << "a device draws pictures, not single rays";
-    }
-};
+class Goniometry : public OnBackends {};
+class GoniometryLoop : public OnBackends {};
+class Reciprocity : public OnBackends {};
 
 /// Quaternion that turns the lattice's [111] onto +Z.
 openvdb::math::Quat<float> stacking_axis_up() {
@@ -68,14 +63,14 @@ double bragg_snell_nm(const OpalConstants& constants, double angle_rad) {
 }
 
 /// Blocks as thick as the plate: where more of them pile up, the tails of the band alone turn half of the light back.
-void expect_bragg_snell(OpalConstants constants) {
+void expect_bragg_snell(OpalConstants constants, const std::string& backend) {
     constants.coherence_length_um = 1000.0;
     const ScratchFolder folder;
     write_opal_asset(oriented_plate(constants), folder / "plate.vdb");
     write_cap(folder / "above.exr", {0.0f, 0.0f, 1.0f}, 90.0);
     const Goniometer goniometer("[environment]\nfile = '" + (folder / "above.exr").string() +
                                     "'\n[[object]]\nkind = \"opal\"\nfile = '" + (folder / "plate.vdb").string() + "'\n",
-                                2.0);
+                                2.0, backend);
     for (double angle_deg = 0.0; angle_deg <= 60.0; angle_deg += 10.0) {
         const double angle_rad = units::rad_from_deg(angle_deg);
         const double expected_nm = bragg_snell_nm(constants, angle_rad);
@@ -86,18 +81,18 @@ void expect_bragg_snell(OpalConstants constants) {
     }
 }
 
-TEST(Goniometer, PlatesPeakWhereBraggAndSnellSay) {
+TEST_P(Goniometry, PlatesPeakWhereBraggAndSnellSay) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 250.0;
-    expect_bragg_snell(small.constants);
+    expect_bragg_snell(small.constants, GetParam());
 }
 
-TEST(Goniometer, PlatesThatDisperseDoSoToo) {
+TEST_P(Goniometry, PlatesThatDisperseDoSoToo) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 230.0;
     small.constants.n_sphere = RefractiveIndex::of_material("silica");
     small.constants.n_medium = RefractiveIndex::of_material("water");
-    expect_bragg_snell(small.constants);
+    expect_bragg_snell(small.constants, GetParam());
 }
 
 /// Reflectance of a pile of blocks, M r / (1 + (M - 1) r), averaged over the blocks' triangular spread of thickness: normal
@@ -122,7 +117,7 @@ double pile_reflectance(const CrystalParameters& crystal, double coherence_nm, d
 
 /// The whole walk through a plate of one grain, against the pile's formula between the plate's faces (intensities added):
 /// reflected by a face F, by the pile R, by the far face.
-TEST_P(PlatesInTheGoniometer, ReflectAsPilesOfBlocksDo) {
+TEST_P(GoniometryLoop, PlatesReflectAsPilesOfBlocksDo) {
     for (const double blocks : {1.0, 12.0, 200.0}) {
         SmallOpal small;
         small.constants.n_medium = 1.42;
@@ -133,7 +128,7 @@ TEST_P(PlatesInTheGoniometer, ReflectAsPilesOfBlocksDo) {
         const Goniometer goniometer("[environment]\nfile = '" + (folder / "above.exr").string() +
                                         "'\n[opal]\nmax_odds = 1e6\n[[object]]\nkind = \"opal\"\nfile = '" +
                                         (folder / "plate.vdb").string() + "'\n",
-                                    2.0, std::string(GetParam()) == "loop");
+                                    2.0, GetParam());
         const CrystalParameters crystal{250.0, 1.45, 1.42};
         const double n = effective_index(crystal), face = std::pow((n - 1.0) / (n + 1.0), 2);
         const double bragg_nm = 2.0 * n * std::sqrt(2.0 / 3.0) * 250.0;
@@ -153,16 +148,15 @@ TEST_P(PlatesInTheGoniometer, ReflectAsPilesOfBlocksDo) {
 
 /// Emitter and detector change places: the flux must not. The sample is a ball of grains in random orientations; directions 70
 /// degrees apart, so that what arrives was turned by planes, by scattering or by the surface more than once.
-void expect_reciprocal(const SmallOpal& small, const std::string& settings, double wavelength_nm, int paths) {
+void expect_reciprocal(const SmallOpal& small, const std::string& backend, double wavelength_nm, int paths) {
     const ScratchFolder folder;
     write_opal_asset(small.make(), folder / "ball.vdb");
     write_cap(folder / "a.exr", normalize({0.2f, -0.3f, 1.0f}), 40.0);
     write_cap(folder / "b.exr", normalize({1.0f, 0.3f, -0.1f}), 40.0);
     const auto flux = [&](const char* emitter, const char* detector, std::uint64_t seed) {
         const Goniometer goniometer("[environment]\nfile = '" + (folder / emitter).string() +
-                                        "'\n[[object]]\nkind = \"opal\"\nfile = '" + (folder / "ball.vdb").string() + "'\n" +
-                                        settings,
-                                    1.05 * small.radius_mm);
+                                        "'\n[[object]]\nkind = \"opal\"\nfile = '" + (folder / "ball.vdb").string() + "'\n",
+                                    1.05 * small.radius_mm, backend);
         return goniometer.exchange(read_environment(folder / detector), wavelength_nm, paths, seed);
     };
     const auto forth = flux("a.exr", "b.exr", 1), back = flux("b.exr", "a.exr", 2);
@@ -174,14 +168,14 @@ void expect_reciprocal(const SmallOpal& small, const std::string& settings, doub
     EXPECT_LT(error, 0.015 * forth.mean) << "too noisy to say anything";
 }
 
-TEST(Reciprocity, OfManyGrains) {
+TEST_P(Reciprocity, OfManyGrains) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 300.0;
     small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.05);
-    for (const double wavelength_nm : {460.0, 600.0}) expect_reciprocal(small, "", wavelength_nm, 200000);
+    for (const double wavelength_nm : {460.0, 600.0}) expect_reciprocal(small, GetParam(), wavelength_nm, 200000);
 }
 
-TEST(Reciprocity, OfManyGrainsInAirWithScatteringAndDisorder) {
+TEST_P(Reciprocity, OfManyGrainsInAirWithScatteringAndDisorder) {
     SmallOpal small;
     small.constants.sphere_diameter_nm = 300.0;
     small.constants.n_medium = 1.0;
@@ -190,10 +184,12 @@ TEST(Reciprocity, OfManyGrainsInAirWithScatteringAndDisorder) {
     small.constants.mosaic_spread_deg = 2.0;
     small.constants.stacking_fault_probability = 0.1;
     small.constants.sigma_a_per_mm = absorber_spectrum("carbon", 0.05);
-    expect_reciprocal(small, "", 520.0, 200000);
+    expect_reciprocal(small, GetParam(), 520.0, 200000);
 }
 
-INSTANTIATE_TEST_SUITE_P(, PlatesInTheGoniometer, cpu_loop_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, Goniometry, cpu_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, GoniometryLoop, cpu_loop_and_cuda(), backend_name);
+INSTANTIATE_TEST_SUITE_P(, Reciprocity, cpu_and_cuda(), backend_name);
 
 }  // namespace
 }  // namespace opal
