@@ -5,7 +5,7 @@
 
 /// The two diffraction models that two-beam theory is compared with: the kinematic sum over a finite number of planes (Laue), and
 /// the Ewald sphere with a tolerance and a Fresnel reflectance. Templates on the real type: the same formulas serve the renderer
-/// in float and the tables in double.
+/// in its precision and the tables in double.
 namespace opal {
 
 template <typename Real>

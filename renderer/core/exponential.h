@@ -51,7 +51,7 @@ OPAL_HD inline float logarithm(float x) {
 }
 
 #if defined(OPAL_DOUBLE_TRANSPORT)
-/// Both to double precision where the transport computes in it.
+/// Both by the library, as far as a double reaches, where the transport computes in it.
 OPAL_HD inline double exponential(double x) {
     return exp(x);
 }

@@ -238,7 +238,8 @@ OPAL_HD inline InteriorEvent cross_interior(const OpalView& opal, const PathWave
                 const real event_mm = min_of(turn_mm, flight.scatter_distance_mm());
                 const real near_mm = entered_mm + scale * opal.grain_size_mm[visit.grain - 1];
                 surface_mm = event_mm < near_mm ? surface.distance_mm(event_mm) : surface.distance_mm();
-                next = walk.next_grain(visit.grain, reached, min_of(surface_mm, turn_mm) / scale);
+                // Never beyond the event: where no surface is known, voxels go on without end.
+                next = walk.next_grain(visit.grain, reached, min_of(surface_mm, event_mm) / scale);
             }
             visit.cell = walk.cell();
             const real leaves_mm = next == 0 ? surface_mm : max_of(entered_mm, reached * scale);

@@ -7,7 +7,7 @@
 #include "renderer/core/scene_view.h"
 #include "renderer/core/surface_probe.h"
 
-/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&, float max_mm), bool occluded(const Ray&, float
+/// The one path tracer. `Intersector` supplies bool closest(const Ray&, RayHit&, real max_mm), bool occluded(const Ray&, real
 /// max_mm): Embree on the CPU.
 namespace opal {
 

@@ -60,7 +60,7 @@ OPAL_HD inline real sample_draine_cosine(real u, real g, real alpha) {
     const real total = 2.0f * (1.0f + alpha * (1.0f + 2.0f * g * g) / 3.0f);
     const real target = total * (g < 0.0f ? 1.0f - u : u);
     real low = 0.0f, high = 2.0f, y = 2.0f * target / total;
-    // A step that Newton's would take out of the bracket halves it instead: 64 are past the last bit of a float.
+    // A step that Newton's would take out of the bracket halves it instead: 64 are past the last bit.
     for (int step = 0; step < 64; ++step) {
         const real slope = 1.0f + alpha * square(forward_henyey_greenstein_cosine(y, forward_g));
         const real ratio = f / (e + forward_g * y);

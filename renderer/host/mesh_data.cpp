@@ -70,9 +70,9 @@ MeshData make_cylinder(double radius_mm, double height_mm, double bevel_mm) {
 RigidTransform object_transform(const ObjectDescription& object) {
     const auto about = [](int axis, double angle_deg) {
         const double half = 0.5 * units::rad_from_deg(angle_deg);
-        float v[3] = {0.0f, 0.0f, 0.0f};
-        v[axis] = float(std::sin(half));
-        return Quaternion{v[0], v[1], v[2], float(std::cos(half))};
+        real v[3] = {0.0f, 0.0f, 0.0f};
+        v[axis] = real(std::sin(half));
+        return Quaternion{v[0], v[1], v[2], real(std::cos(half))};
     };
     const auto product = [](Quaternion a, Quaternion b) {
         return Quaternion{a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
@@ -81,8 +81,8 @@ RigidTransform object_transform(const ObjectDescription& object) {
     RigidTransform transform;
     transform.rotation =
         product(about(2, object.rotate_deg[2]), product(about(1, object.rotate_deg[1]), about(0, object.rotate_deg[0])));
-    transform.origin = {float(object.translate_mm[0]), float(object.translate_mm[1]), float(object.translate_mm[2])};
-    transform.scale = float(object.scale);
+    transform.origin = {real(object.translate_mm[0]), real(object.translate_mm[1]), real(object.translate_mm[2])};
+    transform.scale = real(object.scale);
     return transform;
 }
 

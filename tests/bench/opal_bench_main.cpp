@@ -119,7 +119,7 @@ int run_bench(int argc, char** argv) {
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
     CLI::App* const convergence =
-        app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some minutes)");
+        app.add_subcommand("convergence", "samples and time to equal error: wavelengths, samplers, guiding (some ten minutes)");
     convergence->add_option("-o,--output", arguments.folder, "folder for the .csv files")->required()->type_name("DIR");
     convergence->add_flag("--quick", arguments.quick, "fewer pixels and samples (about a minute)");
     CLI::App* const pareto = app.add_subcommand("pareto", "speed against accuracy: every choice on four opals (most of an hour)");

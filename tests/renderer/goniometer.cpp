@@ -22,11 +22,11 @@ constexpr int picture_edge = 16;
 constexpr int picture_pixels = picture_edge * picture_edge;
 
 int samples_for(int paths) {
-    return (paths + picture_pixels - 1) / picture_pixels;
+    return std::max(1, (paths + picture_pixels - 1) / picture_pixels);
 }
 
-/// The spectrum's tables for paths of one wavelength: inverting this integrated density gives it for every number in [0, 1), but
-/// for a hundred-thousandth of a nanometre.
+/// The spectrum's tables for paths of one wavelength: inverting this integrated density gives it for every number in [0, 1), to
+/// a hundred-thousandth of a nanometre and the rounding of a float.
 class OneWavelength {
   public:
     explicit OneWavelength(double wavelength_nm) : pdf_(spectrum_samples, 1.0f), cdf_(spectrum_samples) {
@@ -97,12 +97,12 @@ Goniometer::Goniometer(const std::string& scene_toml, double radius_mm, std::str
              notices_),
       intersector_(scene_.meshes()) {}
 
-Goniometer::Reading Goniometer::radiance(Vec3 direction, double spot_radius_mm, double wavelength_nm, int paths,
+Goniometer::Reading Goniometer::radiance(Vec3 direction, double half_edge_mm, double wavelength_nm, int paths,
                                          std::uint64_t seed) const {
     const OneWavelength line(wavelength_nm);
     SceneView view = scene_.view();
     view.seed = seed;
-    view.camera = detector_camera(direction, 2.0 * spot_radius_mm, 2.0 * radius_mm_);
+    view.camera = detector_camera(direction, 2.0 * half_edge_mm, 2.0 * radius_mm_);
     line.confine(view.spectra);
     Film film(picture_edge, picture_edge, false);
     if (const MakeDevice make_device = backend_maker(backend_, scene_.meshes())) {
@@ -125,8 +125,10 @@ Goniometer::Reading Goniometer::exchange(const EnvironmentMap& detector, double 
     double sum = 0.0, squared_error = 0.0, first_of_pair = 0.0;
     for (int i = 0; i < num_directions; ++i) {
         const RandomBlock block = random_block(seed, RandomStream::bench, std::uint64_t(i), 0);
-        const Vec3 towards = sample_environment(view, (float(i / strata) + uniform_float(block.value[0])) / strata,
-                                                (float(i % strata) + uniform_float(block.value[1])) / strata);
+        const auto within = [](int stratum, std::uint32_t bits) {
+            return std::min((float(stratum) + uniform_float(bits)) / strata, 0x1.fffffep-1f);
+        };
+        const Vec3 towards = sample_environment(view, within(i / strata, block.value[0]), within(i % strata, block.value[1]));
         const float pdf = environment_pdf(view, towards);
         double flux = 0.0;
         if (pdf > 0.0f) {

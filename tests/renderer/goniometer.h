@@ -22,9 +22,9 @@ class Goniometer {
     };
 
     /// Radiance over the environment's white that reaches a detector towards which light travels along -`direction`, from a
-    /// square spot of half the edge `spot_radius_mm` at the origin: paths are followed backwards, from the detector along
+    /// square spot of half the edge `half_edge_mm` at the origin: paths are followed backwards, from the detector along
     /// `direction`; at least as many as `paths`.
-    Reading radiance(Vec3 direction, double spot_radius_mm, double wavelength_nm, int paths, std::uint64_t seed) const;
+    Reading radiance(Vec3 direction, double half_edge_mm, double wavelength_nm, int paths, std::uint64_t seed) const;
 
     /// Flux from the emitter through the whole sample into a detector whose sensitivity over the sphere is `detector`'s radiance
     /// (mm^2 sr, for emitters and detectors of 1): the same with emitter and detector exchanged, whatever the sample (Helmholtz).

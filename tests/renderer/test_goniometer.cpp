@@ -146,7 +146,7 @@ TEST_P(GoniometryLoop, PlatesReflectAsPilesOfBlocksDo) {
     }
 }
 
-/// Emitter and detector change places: the flux must not. The sample is a ball of grains in random orientations; directions 70
+/// Emitter and detector change places: the flux must not. The sample is a ball of grains in random orientations; directions 90
 /// degrees apart, so that what arrives was turned by planes, by scattering or by the surface more than once.
 void expect_reciprocal(const SmallOpal& small, const std::string& backend, double wavelength_nm, int paths) {
     const ScratchFolder folder;

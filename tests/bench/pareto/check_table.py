@@ -36,8 +36,9 @@ def check(folder):
         for light in ("", "tent_"):
             # Standard errors from few seeds are uncertain themselves; the seeds are fixed, so are the errors.
             assert row[light + "mean_error"] < min(-0.2, -3.0 * row[light + "mean_error_se"]), (light, row)
-    # The same walk by another method, and the same scene turned, are not that.
-    for choice, variant in (("grains", "sphere tracing"), ("precision", "single, scene turned by 37 degrees")):
+    # The same walk by another method, the same surfaces by another, and the same scene turned, are not that.
+    same = (("grains", "sphere tracing"), ("precision", "single, own tree"), ("precision", "single, scene turned by 37 degrees"))
+    for choice, variant in same:
         row = next(row for row in choices["precious_opal", choice] if row["variant"] == variant)
         assert abs(row["tent_mean_error"]) < 0.02, row
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "formats/error.h"
+#include "shell_word.h"
 
 namespace opal {
 
@@ -23,10 +24,11 @@ void DoubleSubject::draw(const std::vector<std::uint32_t>& pixels, int samples, 
     for (const std::uint32_t pixel : pixels) asked << pixel << '\n';
     asked.close();
     if (!asked) throw SystemError(fmt::format("{}: writing failed", list.string()));
-    std::string command = fmt::format("'{}' '{}' --pixels '{}' -o '{}' --samples {} --seed {}", OPAL_DRAW_DOUBLE, scene_.string(),
-                                      list.string(), drawn.string(), samples, seed);
+    std::string command =
+        fmt::format("{} {} --pixels {} -o {} --samples {} --seed {}", shell_word(OPAL_DRAW_DOUBLE), shell_word(scene_.string()),
+                    shell_word(list.string()), shell_word(drawn.string()), samples, seed);
     if (lighting == Lighting::tent) command += " --tent";
-    for (const std::string& setting : settings_) command += fmt::format(" --set \"{}\"", setting);
+    for (const std::string& setting : settings_) command += " --set " + shell_word(setting);
     if (std::system(command.c_str()) != 0) throw SystemError("failed: " + command);
     std::ifstream answer(drawn);
     double sample_s = 0.0;

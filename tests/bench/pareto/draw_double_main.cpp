@@ -42,7 +42,7 @@ int draw(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         throw opal::InputError(fmt::format("{} (see opal-draw-double --help)", error.what()));
     }
-    opal::Subject subject(scene, settings, opal::SpectralChoice::continuous, opal::Surfaces::own_tree);
+    opal::Subject subject(scene, settings, opal::SpectralChoice::continuous, opal::Tracing::own_tree_in_double);
     const opal::Lighting lighting = tent ? opal::Lighting::tent : opal::Lighting::of_the_scene;
     subject.draw(listed_pixels(pixels), samples, seed, lighting);
     std::ofstream file(output);

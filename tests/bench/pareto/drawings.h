@@ -11,6 +11,10 @@ namespace opal {
 /// What lights a scene's gem: its own environment, or the built-in light tent, whose broad light leaves far less noise.
 enum class Lighting { of_the_scene, tent };
 
+/// What follows the paths: with Embree and in single precision as opal-render does on the processor, or with the hierarchy that
+/// devices walk, in single or in double precision.
+enum class Tracing { embree, own_tree, own_tree_in_double };
+
 /// One scene with some settings, and what has been drawn of it, seed by seed.
 class Drawings {
   public:
@@ -19,7 +23,7 @@ class Drawings {
     /// Draws the pixels once more, with another seed.
     virtual void draw(const std::vector<std::uint32_t>& pixels, int samples, std::uint64_t seed,
                       Lighting lighting = Lighting::of_the_scene) = 0;
-    /// Of all that rendering reads.
+    /// Of the scene: what it points to, without the hierarchies over its meshes.
     virtual std::size_t memory_bytes() const = 0;
     virtual double load_s() const = 0;
 

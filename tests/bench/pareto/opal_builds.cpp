@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "formats/error.h"
+#include "shell_word.h"
 
 namespace opal {
 namespace {
@@ -20,9 +21,10 @@ double children_processor_s() {
 
 std::string build_command(const std::string& program, const ParetoScene& scene, const ParetoVariant& variant,
                           const std::string& output) {
-    std::string text = fmt::format("{} build '{}' -o '{}'", program, scene.recipe.string(), output);
-    for (const std::string& assignment : variant.recipe) text += fmt::format(" --set '{}'", assignment);
-    if (!variant.for_pixels.empty()) text += fmt::format(" --for '{}' --for-pixels {}", scene.scene.string(), variant.for_pixels);
+    std::string text = fmt::format("{} build {} -o {}", program, shell_word(scene.recipe.string()), shell_word(output));
+    for (const std::string& assignment : variant.recipe) text += " --set " + shell_word(assignment);
+    if (!variant.for_pixels.empty())
+        text += fmt::format(" --for {} --for-pixels {}", shell_word(scene.scene.string()), variant.for_pixels);
     return text;
 }
 

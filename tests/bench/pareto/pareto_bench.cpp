@@ -19,6 +19,7 @@
 #include "formats/error.h"
 #include "opal_builds.h"
 #include "picture_error.h"
+#include "shell_word.h"
 #include "subject.h"
 #include "variants.h"
 
@@ -42,11 +43,11 @@ std::vector<std::string> scene_settings(const ParetoVariant& variant, const std:
 
 std::string render_command(const ParetoScene& scene, const ParetoVariant& variant) {
     if (variant.spectral != SpectralChoice::continuous) return "opal-bench pareto (fixed wavelengths are there alone)";
-    if (variant.in_double) return "opal-bench pareto (draws with opal-draw-double)";
-    if (variant.surfaces == Surfaces::own_tree) return "opal-bench pareto (opal-render has the tree on devices alone)";
-    std::string text = fmt::format("opal-render '{}' -o {}.exr --set object.0.file={}.vdb", in_project(scene).scene.string(),
-                                   scene.name, scene.name);
-    for (const std::string& assignment : variant.scene) text += fmt::format(" --set '{}'", assignment);
+    if (variant.tracing == Tracing::own_tree_in_double) return "opal-bench pareto (draws with opal-draw-double)";
+    if (variant.tracing == Tracing::own_tree) return "opal-bench pareto (opal-render has the tree on devices alone)";
+    std::string text = fmt::format("opal-render {} -o {}.exr --set object.0.file={}.vdb",
+                                   shell_word(in_project(scene).scene.string()), scene.name, scene.name);
+    for (const std::string& assignment : variant.scene) text += " --set " + shell_word(assignment);
     return text;
 }
 
@@ -140,10 +141,10 @@ std::vector<std::string> measure_choice(const ParetoScene& scene, const std::vec
     std::vector<std::uint32_t> pixels;  // of the exact one, or of the first where that is drawn elsewhere
     for (const ParetoVariant& variant : variants) {
         const std::vector<std::string> settings = scene_settings(variant, builds.build(scene, variant).file, extent.width);
-        if (variant.in_double) {
+        if (variant.tracing == Tracing::own_tree_in_double) {
             subjects.push_back(std::make_unique<DoubleSubject>(scene.scene, settings, builds.folder()));
         } else {
-            auto subject = std::make_unique<Subject>(scene.scene, settings, variant.spectral, variant.surfaces);
+            auto subject = std::make_unique<Subject>(scene.scene, settings, variant.spectral, variant.tracing);
             if (pixels.empty() || variant.exact) pixels = subject->pixels();
             subjects.push_back(std::move(subject));
         }

@@ -63,7 +63,7 @@ void SpectralLines::confine(SpectrumTables& tables) const {
     tables.alias = {};
 }
 
-Xyz SpectralLines::color(const SpectrumTables& tables, float wavelength_nm, float pdf_per_nm) const {
+Xyz SpectralLines::color(const SpectrumTables& tables, real wavelength_nm, real pdf_per_nm) const {
     if (choice_ == SpectralChoice::continuous) {
         const Vec3 observer = table_at(tables.observer, wavelength_nm);
         const double scale = 1.0 / double(pdf_per_nm);
@@ -73,7 +73,7 @@ Xyz SpectralLines::color(const SpectrumTables& tables, float wavelength_nm, floa
     const int nm = int(wavelength_nm - spectrum_min_nm);
     int line = line_at(nm);
     // A wavelength just below a whole number may have been rounded to it.
-    if (line < 0 && float(nm) == wavelength_nm - spectrum_min_nm) line = line_at(nm - 1);
+    if (line < 0 && real(nm) == wavelength_nm - spectrum_min_nm) line = line_at(nm - 1);
     if (line < 0) return {0.0, 0.0, 0.0};
     const Xyz& color = lines_[std::size_t(line)].color;
     const double lines = double(lines_.size());

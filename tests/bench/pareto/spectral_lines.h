@@ -25,7 +25,7 @@ class SpectralLines {
     void confine(SpectrumTables& tables) const;
     /// Colour of a spectral radiance of 1 at a drawn wavelength, over the wavelength's density (1/nm): an estimate of its share
     /// in the picture's colour.
-    Xyz color(const SpectrumTables& tables, float wavelength_nm, float pdf_per_nm) const;
+    Xyz color(const SpectrumTables& tables, real wavelength_nm, real pdf_per_nm) const;
 
   private:
     struct Line {

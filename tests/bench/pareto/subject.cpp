@@ -29,11 +29,11 @@ EnvironmentMap tent_of(EnvironmentDescription environment, Upsampling upsampling
 }  // namespace
 
 Subject::Subject(const std::filesystem::path& scene, const std::vector<std::string>& settings, SpectralChoice spectral,
-                 Surfaces surfaces)
+                 Tracing tracing)
     : description_(read_scene(scene, settings)),
       host_(description_, notices_),
       intersector_(host_.meshes()),
-      tree_(surfaces == Surfaces::own_tree ? std::optional<Bvh>(host_.meshes()) : std::nullopt),
+      tree_(tracing == Tracing::embree ? std::nullopt : std::optional<Bvh>(host_.meshes())),
       guides_(host_, intersector_),
       lines_(host_.view().spectra, spectral),
       load_s_(watch_.seconds()),

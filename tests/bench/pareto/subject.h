@@ -18,15 +18,12 @@
 
 namespace opal {
 
-/// What finds the surfaces: Embree in single precision, or the devices' hierarchy in the transport's.
-enum class Surfaces { embree, own_tree };
-
-/// One scene with some settings in memory.
+/// One scene with some settings in memory, drawn in the precision that this program computes in.
 class Subject : public Drawings {
   public:
     /// `settings`: overrides of the scene.
     Subject(const std::filesystem::path& scene, const std::vector<std::string>& settings, SpectralChoice spectral,
-            Surfaces surfaces = Surfaces::embree);
+            Tracing tracing = Tracing::embree);
 
     /// The pixels whose centre shows a transparent body.
     std::vector<std::uint32_t> pixels() const { return gem_pixels(host_.view(), intersector_); }

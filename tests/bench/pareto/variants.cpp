@@ -144,9 +144,9 @@ Variants tessellations(const ParetoScene& scene, bool quick) {
     return variants;
 }
 
-/// Double precision where it has been built; single with the same search for surfaces; and the same scene turned about the
-/// vertical, all of it: the same picture in other roundings.
-Variants precisions() {
+/// Single precision, also with the hierarchy that double precision has; double, where its program has been built; and the same
+/// scene turned about the vertical, all of it: the same picture in other roundings.
+Variants precisions(bool quick) {
     const double turn_rad = units::rad_from_deg(37.0), distance_mm = 32.0;
     Variants variants = {
         {"precision", "single", {}, {}},
@@ -156,12 +156,13 @@ Variants precisions() {
          {},
          {fmt::format("camera.position_mm=[{}, {}, 24.0]", distance_mm * std::sin(turn_rad), -distance_mm * std::cos(turn_rad)),
           "environment.rotate_deg=37.0", "object.0.rotate_deg=[0.0, 0.0, 37.0]"}}};
-    variants[1].surfaces = Surfaces::own_tree;
-    if (DoubleSubject::available()) {
+    variants[1].tracing = Tracing::own_tree;
+    const bool in_double = !quick && DoubleSubject::available();
+    if (in_double) {
         variants.push_back({"precision", "double, own tree", {}, {}});
-        variants.back().in_double = true;
+        variants.back().tracing = Tracing::own_tree_in_double;
     }
-    (variants.back().in_double ? variants.back() : variants.front()).exact = true;
+    (in_double ? variants.back() : variants.front()).exact = true;
     return variants;
 }
 
@@ -224,7 +225,7 @@ std::vector<std::vector<ParetoVariant>> pareto_choices(const ParetoScene& scene,
         words("upsampling", "color.upsampling", {"jakob-hanika", "smits", "basis"}),
         numbers("bounces", "render.max_bounces", few({4, 8, 16, 32, 64, 256, 1024})),
         words("roulette", "render.roulette", {"true", "false"}),
-        precisions(),
+        precisions(quick),
         whole_settings(scene, quick),
     };
     if (scene.scatters) {

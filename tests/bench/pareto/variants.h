@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "drawings.h"
 #include "spectral_lines.h"
-#include "subject.h"
 
 namespace opal {
 
@@ -28,8 +28,7 @@ struct ParetoVariant {
     SpectralChoice spectral = SpectralChoice::continuous;
     std::string for_pixels = {};  ///< opal-model build --for SCENE --for-pixels
     bool exact = false;           ///< the most exact of its choice: the others are measured against it
-    Surfaces surfaces = Surfaces::embree;
-    bool in_double = false;  ///< drawn by the program that computes in double precision
+    Tracing tracing = Tracing::embree;
 };
 
 std::vector<ParetoScene> pareto_scenes(const std::filesystem::path& examples, const std::filesystem::path& block, bool quick);
