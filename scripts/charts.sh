@@ -12,8 +12,6 @@ if [ -z "$folder" ]; then
     if [ -n "$quick" ]; then folder=out/charts; else folder=docs/charts; fi
 fi
 mkdir -p "$folder"
-# Single against double precision is on the chart where the transport has been built in both: some minutes.
-if [ -z "$quick" ]; then cmake --build build/release --target opal-draw-double; fi
 for what in pareto shots stability scaling; do
     build/release/bin/opal-bench $what $quick -o "$folder"
 done

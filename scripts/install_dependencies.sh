@@ -8,7 +8,7 @@ packages="
   libopenvdb-dev libnanovdb-dev libopenvdb-tools python3-openvdb libboost-dev libboost-iostreams-dev libblosc-dev
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev
   libopenimageio-dev libopenexr-dev libpng-dev libfreetype-dev libtbb-dev libembree-dev libassimp-dev
-  libplplot-dev plplot-driver-cairo
+  libplplot-dev plplot-driver-cairo python3-matplotlib
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgtest-dev libnanoflann-dev
   fonts-dejavu-core
 "

@@ -12,6 +12,8 @@ constexpr double near_miss = 1.0e-5;
 /// Sites that nearly coincide differ hardly in any direction; where dividing on costs more than it can save, all that is left
 /// counts as neighbours.
 constexpr std::size_t max_patches = 4096;
+/// Where as many have been looked at in vain, it is the body's surface that bounds a cell.
+constexpr std::size_t many_rivals = 256;
 
 openvdb::Vec3d direction_of(int face, double u, double v) {
     const double sign = face % 2 == 0 ? 1.0 : -1.0;
@@ -123,17 +125,24 @@ void CellNeighborSearch::gather(std::uint32_t site) {
     std::fill(std::begin(lowest_), std::end(lowest_), 0.0f);
     std::fill(std::begin(best_), std::end(best_), 0.0f);
     std::fill(std::begin(winner_), std::end(winner_), 0.0f);
-    // The first six bound every cell; others only shorten the search, and do so where they are near.
-    for (std::size_t n = 0; n < bounds_.planes().size(); ++n) {
-        const BoundingPlane& plane = bounds_.planes()[n];
-        const double distance_mm = plane.offset_mm - plane.normal.dot(place);
-        if (n >= 6 && distance_mm > near_mm_) continue;
-        offer({plane.normal / distance_mm, 0.0, 1.0 / distance_mm, -1});
-    }
+    // The first six bound every cell; others only shorten the search: at once where they are near, else where it gets long.
+    const auto offer_planes = [&](bool far) {
+        for (std::size_t n = 0; n < bounds_.planes().size(); ++n) {
+            const BoundingPlane& plane = bounds_.planes()[n];
+            const double distance_mm = plane.offset_mm - plane.normal.dot(place);
+            if (far == (n >= 6 && distance_mm > near_mm_)) offer({plane.normal / distance_mm, 0.0, 1.0 / distance_mm, -1});
+        }
+    };
+    offer_planes(false);
+    bool all_planes = false;
     double lowest = 0.0;
     // kappa_j <= 2 / (|g| - D), and |g| - D is at least the gap.
     const auto matters = [&](double gap_mm) { return gap_mm * lowest * (1.0 - near_miss) <= 2.0; };
     tree_.nearest_first(place, weight, pending_, matters, [&](std::uint32_t first, std::uint32_t last) {
+        if (!all_planes && rivals_.size() > many_rivals) {
+            offer_planes(true);
+            all_planes = true;
+        }
         for (std::uint32_t other = first; other < last; ++other) {
             if (other == site) continue;
             const openvdb::Vec3d offset = place_of(sites_[other]) - place;

@@ -25,9 +25,9 @@ double excess_mm(const std::vector<Site>& sites, Vec3 origin, Vec3 direction, do
 
 /// The grains that a walk (GrainWalk, CellWalk, ...) finds.
 template <class Walk>
-std::vector<GrainStretch> walked_stretches(Walk&& walk, float end_mm) {
+std::vector<GrainStretch> walked_stretches(Walk&& walk, real end_mm) {
     std::vector<GrainStretch> stretches;
-    float distance = 0.0f;
+    real distance = 0.0f;
     int grain = 0;
     while ((grain = walk.next_grain(grain, distance, end_mm)) != 0) stretches.push_back({grain, double(distance)});
     return stretches;

@@ -33,7 +33,7 @@ class Draws {
         while (true) {
             const openvdb::Vec3d v = in_cube(1.0);
             if (v.lengthSqr() > 1.0 || v.lengthSqr() < 0.01) continue;
-            return normalize({float(v.x()), float(v.y()), float(v.z())});
+            return normalize({real(v.x()), real(v.y()), real(v.z())});
         }
     }
 
@@ -70,11 +70,11 @@ inline std::vector<Site> random_sites(std::size_t count, double spread_mm, std::
 }
 
 /// Distance to the cube's surface along a ray.
-inline float way_out_mm(Vec3 origin, Vec3 direction) {
-    const float o[3] = {origin.x, origin.y, origin.z}, v[3] = {direction.x, direction.y, direction.z};
-    float end = 1.0e30f;
+inline real way_out_mm(Vec3 origin, Vec3 direction) {
+    const real o[3] = {origin.x, origin.y, origin.z}, v[3] = {direction.x, direction.y, direction.z};
+    real end = 1.0e30f;
     for (int axis = 0; axis < 3; ++axis)
-        if (v[axis] != 0.0f) end = std::min(end, (std::copysign(float(half_mm), v[axis]) - o[axis]) / v[axis]);
+        if (v[axis] != 0.0f) end = std::min(end, (std::copysign(real(half_mm), v[axis]) - o[axis]) / v[axis]);
     return end;
 }
 
@@ -87,7 +87,7 @@ WalkErrors errors_of(const std::vector<Site>& sites, int rays, std::uint64_t see
     WalkErrors errors;
     for (int n = 0; n < rays; ++n) {
         const Vec3 origin = to_vec3(draws.in_cube(half_mm)), direction = draws.direction();
-        const float end = way_out_mm(origin, direction);
+        const real end = way_out_mm(origin, direction);
         const auto exact = exact_stretches(sites, origin, direction, double(end));
         const auto walked = walked_stretches(Walk(field, origin, direction), end);
         add_errors(sites, origin, direction, double(end), exact, walked, 0.01, errors);

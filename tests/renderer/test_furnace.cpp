@@ -87,6 +87,14 @@ TEST_P(Furnace, DiffractionAndScattering) {
     expect_invisible(GetParam(), small, "[opal]\ncompanions = 0\n", 256, 0.005);
 }
 
+/// Scattering is what comes next where hardly anything diffracts: there no ray is cast as far as the surface.
+TEST_P(Furnace, ScatteringInVoxels) {
+    SmallOpal small;
+    small.constants.sphere_diameter_nm = 280.0;
+    small.constants.sigma_s_mie_per_mm = 0.8;
+    expect_invisible(GetParam(), small, "[opal]\ngrains = \"voxels\"\ndiffraction = \"ewald-fresnel\"\n", 64, 0.005);
+}
+
 TEST_P(Furnace, FieldsThatVary) {
     SmallOpal small;
     small.radius_mm = 1.5;

@@ -11,10 +11,6 @@
 
 namespace opal {
 
-bool DoubleSubject::available() {
-    return std::filesystem::exists(OPAL_DRAW_DOUBLE);
-}
-
 DoubleSubject::DoubleSubject(std::filesystem::path scene, std::vector<std::string> settings, std::filesystem::path folder)
     : scene_(std::move(scene)), settings_(std::move(settings)), folder_(std::filesystem::absolute(folder)) {}
 

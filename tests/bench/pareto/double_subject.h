@@ -13,9 +13,6 @@ namespace opal {
 /// arithmetic is chosen when it is compiled.
 class DoubleSubject : public Drawings {
   public:
-    /// Whether the program has been built (cmake --build build/release --target opal-draw-double).
-    static bool available();
-
     /// `folder`: for files on the way.
     DoubleSubject(std::filesystem::path scene, std::vector<std::string> settings, std::filesystem::path folder);
 

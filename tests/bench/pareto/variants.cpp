@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "double_subject.h"
 #include "formats/crystal_defect.h"
 #include "formats/lorenz_mie.h"
 #include "formats/quality.h"
@@ -144,9 +143,9 @@ Variants tessellations(const ParetoScene& scene, bool quick) {
     return variants;
 }
 
-/// Single precision, also with the hierarchy that double precision has; double, where its program has been built; and the same
-/// scene turned about the vertical, all of it: the same picture in other roundings.
-Variants precisions(bool quick) {
+/// Single precision, also with the hierarchy that double precision has; the same scene turned about the vertical, all of it: the
+/// same picture in other roundings; and double.
+Variants precisions() {
     const double turn_rad = units::rad_from_deg(37.0), distance_mm = 32.0;
     Variants variants = {
         {"precision", "single", {}, {}},
@@ -155,14 +154,11 @@ Variants precisions(bool quick) {
          "single, scene turned by 37 degrees",
          {},
          {fmt::format("camera.position_mm=[{}, {}, 24.0]", distance_mm * std::sin(turn_rad), -distance_mm * std::cos(turn_rad)),
-          "environment.rotate_deg=37.0", "object.0.rotate_deg=[0.0, 0.0, 37.0]"}}};
+          "environment.rotate_deg=37.0", "object.0.rotate_deg=[0.0, 0.0, 37.0]"}},
+        {"precision", "double, own tree", {}, {}}};
     variants[1].tracing = Tracing::own_tree;
-    const bool in_double = !quick && DoubleSubject::available();
-    if (in_double) {
-        variants.push_back({"precision", "double, own tree", {}, {}});
-        variants.back().tracing = Tracing::own_tree_in_double;
-    }
-    (in_double ? variants.back() : variants.front()).exact = true;
+    variants[3].tracing = Tracing::own_tree_in_double;
+    variants[3].exact = true;
     return variants;
 }
 
@@ -225,7 +221,7 @@ std::vector<std::vector<ParetoVariant>> pareto_choices(const ParetoScene& scene,
         words("upsampling", "color.upsampling", {"jakob-hanika", "smits", "basis"}),
         numbers("bounces", "render.max_bounces", few({4, 8, 16, 32, 64, 256, 1024})),
         words("roulette", "render.roulette", {"true", "false"}),
-        precisions(quick),
+        precisions(),
         whole_settings(scene, quick),
     };
     if (scene.scatters) {
