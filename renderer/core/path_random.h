@@ -2,7 +2,7 @@
 #pragma once
 
 #include "formats/random.h"
-#include "renderer/core/compat.h"
+#include "renderer/core/real.h"
 #include "renderer/core/sobol.h"
 
 namespace opal {
