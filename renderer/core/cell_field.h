@@ -44,6 +44,15 @@ OPAL_HD inline real cell_clearance_mm(const CellField& field, Vec3 position, int
     return max_of(0.0f, 0.5f * (second_mm - delta_mm(field.sites[cell], position)) - field.rounding_mm);
 }
 
+/// Where a ray has left a box for good; below 0 where that is behind its origin.
+OPAL_HD inline real way_out_mm(Vec3 low, Vec3 high, Vec3 origin, Vec3 direction) {
+    const auto along = [](real low_mm, real high_mm, real origin_mm, real component) {
+        return component == 0.0f ? real(3.0e38f) : ((component > 0.0f ? high_mm : low_mm) - origin_mm) / component;
+    };
+    return min_of(along(low.x, high.x, origin.x, direction.x),
+                  min_of(along(low.y, high.y, origin.y, direction.y), along(low.z, high.z, origin.z, direction.z)));
+}
+
 /// A site whose cell is likely to be near a place.
 OPAL_HD inline int nearby_cell(const CellField& field, Vec3 position) {
     const Vec3 box = field.boxes_per_mm * (position - field.grid_origin);

@@ -27,11 +27,28 @@ OPAL_HD inline real grain_clearance_mm(const GrainsView& grains, Vec3 position, 
     return cell_clearance_mm(grains.cells, position, cell);
 }
 
+/// Beyond this distance along a ray no grain begins.
+OPAL_HD inline real grains_end_mm(const GrainsView& grains, Vec3 origin, Vec3 direction) {
+    if (grains.method == GrainMethod::voxels) {
+        const nanovdb::CoordBBox box = grains.voxels.grid->indexBBox();
+        const real mm = 1.0f / grains.voxels.voxels_per_mm;
+        const Vec3 low{real(box.min()[0]) - 0.5f, real(box.min()[1]) - 0.5f, real(box.min()[2]) - 0.5f};
+        const Vec3 high{real(box.max()[0]) + 0.5f, real(box.max()[1]) + 0.5f, real(box.max()[2]) + 0.5f};
+        return way_out_mm(mm * (low - grains.voxels.index_of_origin), mm * (high - grains.voxels.index_of_origin), origin,
+                          direction);
+    }
+    const CellField& cells = grains.cells;
+    const real mm = 1.0f / cells.boxes_per_mm;
+    const Vec3 size{real(cells.boxes[0]), real(cells.boxes[1]), real(cells.boxes[2])};
+    return way_out_mm(cells.grid_origin, cells.grid_origin + mm * size, origin, direction);
+}
+
 /// The grains along one ray, by the method of the opal.
 class GrainPath {
   public:
     /// As CellWalk; voxels have no cells.
-    OPAL_HD GrainPath(const GrainsView& grains, Vec3 origin, Vec3 direction, int cell = -1) : method_(grains.method) {
+    OPAL_HD GrainPath(const GrainsView& grains, Vec3 origin, Vec3 direction, int cell = -1)
+        : method_(grains.method), end_mm_(grains_end_mm(grains, origin, direction)) {
         switch (method_) {
             case GrainMethod::voxels:
                 new (&voxels_) GrainWalk(grains.voxels, origin, direction);
@@ -50,17 +67,12 @@ class GrainPath {
     GrainPath(const GrainPath&) = delete;
     GrainPath& operator=(const GrainPath&) = delete;
 
+    /// As theirs. A ray that has missed its way out of the body is not followed among grains that are not there: their walks know
+    /// places only as well as those in the body ask for, and in voxels there is no end to the way.
     OPAL_HD int next_grain(int current, real& distance, real end) {
-        switch (method_) {
-            case GrainMethod::cells:
-                return cells_.next_grain(current, distance, end);
-            case GrainMethod::sphere_tracing:
-                return sphere_tracing_.next_grain(current, distance, end);
-            case GrainMethod::hyperboloid:
-                return hyperboloid_.next_grain(current, distance, end);
-            default:
-                return voxels_.next_grain(current, distance, end);
-        }
+        const int grain = next_grain_within(current, distance, min_of(end, end_mm_));
+        if (grain == 0) distance = end;
+        return grain;
     }
 
     /// Where the path stands; -1 with voxels.
@@ -78,7 +90,21 @@ class GrainPath {
     }
 
   private:
+    OPAL_HD int next_grain_within(int current, real& distance, real end) {
+        switch (method_) {
+            case GrainMethod::cells:
+                return cells_.next_grain(current, distance, end);
+            case GrainMethod::sphere_tracing:
+                return sphere_tracing_.next_grain(current, distance, end);
+            case GrainMethod::hyperboloid:
+                return hyperboloid_.next_grain(current, distance, end);
+            default:
+                return voxels_.next_grain(current, distance, end);
+        }
+    }
+
     GrainMethod method_;
+    real end_mm_;
     union {
         GrainWalk voxels_;
         CellWalk cells_;

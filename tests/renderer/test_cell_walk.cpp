@@ -10,6 +10,7 @@
 #include "cell_oracle.h"
 #include "cell_samples.h"
 #include "renderer/core/cell_walk.h"
+#include "renderer/core/grain_path.h"
 #include "renderer/core/hyperboloid_walk.h"
 #include "renderer/core/sphere_tracing_walk.h"
 
@@ -40,6 +41,27 @@ TEST(CellWalk, EqualsTheOracleOnRandomSites) {
 TEST(CellWalk, EqualsTheOracleOnNearlyEqualWeights) {
     for (const double spread_mm : {1.0e-2, 1.0e-4, 1.0e-6, 1.0e-8})
         expect_exact(errors_of<CellWalk>(random_sites(200, spread_mm, 11), 40, 12));
+}
+
+/// As rays that slip through a body's surface ask: far from the sites rounding would let a walk go to and fro for ever.
+TEST(GrainPath, EndsHoweverFarItIsAsked) {
+    const std::vector<Site> sites = random_sites(100, 4.0, 71);
+    const CellData cells(sites, cube());
+    for (const GrainMethod method : {GrainMethod::cells, GrainMethod::sphere_tracing, GrainMethod::hyperboloid}) {
+        GrainsView grains;
+        grains.method = method;
+        grains.cells = cells.field();
+        Draws draws(72);
+        for (int n = 0; n < 2000; ++n) {
+            const Vec3 origin = to_vec3(draws.in_cube(half_mm)), direction = draws.direction();
+            GrainPath path(grains, origin, direction);
+            constexpr float far_mm = 1.0e6f;
+            float distance = 0.0f;
+            int grain = 0, met = 0;
+            while ((grain = path.next_grain(grain, distance, far_mm)) != 0) ASSERT_LT(++met, 1000);
+            EXPECT_EQ(distance, far_mm);
+        }
+    }
 }
 
 TEST(CellWalk, EqualsTheOracleOnManySites) {
